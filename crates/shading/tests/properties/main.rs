@@ -1,4 +1,8 @@
 //! The laws of `shading`, through its public API.
+#![expect(
+    clippy::cast_possible_truncation,
+    reason = "oracles in f64 feed f32 functions"
+)]
 
 mod light;
 mod microfacet;
