@@ -86,20 +86,25 @@ pub fn assemble_triangle(
         }
     }
 
-    // Class by the snapped area, then cut into triangles of the same turn.
-    let area = doubled_polygon_area(corners);
-    let facing = match area {
-        0 => return Assembly::ZeroArea,
-        n if n < 0 => Facing::Front,
-        _ => Facing::Back,
-    };
-    if facing == Facing::Back && cull == Cull::Back {
+    // Cut into triangles, each classed by its own snapped area.
+    let before = out.len();
+    let mut culled = false;
+    for_each_ear(corners, |ear| {
+        let clockwise = doubled_area(ear.map(|c| c.position)) > 0;
+        let facing = if clockwise {
+            Facing::Back
+        } else {
+            Facing::Front
+        };
+        if clockwise && cull == Cull::Back {
+            culled = true;
+        } else {
+            out.extend(Triangle::new(source, facing, ear));
+        }
+    });
+    if culled && out.len() == before {
         return Assembly::BackFacing;
     }
-    let before = out.len();
-    for_each_ear(corners, area.signum(), |ear| {
-        out.extend(Triangle::new(source, facing, ear));
-    });
     kept(out.len() - before)
 }
 
@@ -135,12 +140,15 @@ fn doubled_polygon_area(corners: &[Corner]) -> i64 {
         .sum()
 }
 
-/// Cuts a polygon into triangles that all turn as it does.
+/// Cuts a polygon into triangles that turn as it does.
 ///
 /// Snapping can bend a convex polygon inward by half a unit. A fan would then reach over its border and cover
 /// a neighbour's samples; ears (Meisters 1975) stay inside. Corners that snapping put on a line with their
-/// neighbours, or on each other, go without a triangle: the border stays where it is.
-fn for_each_ear(corners: &[Corner], turn: i64, mut emit: impl FnMut([Corner; 3])) {
+/// neighbours, or on each other, go without a triangle: the border stays where it is. A polygon thinner than
+/// a unit may cross itself and run out of ears; then corners are cut off as they come, and fronts minus
+/// backs still cover each sample as often as the border winds around it.
+fn for_each_ear(corners: &[Corner], mut emit: impl FnMut([Corner; 3])) {
+    let turn = doubled_polygon_area(corners).signum();
     let mut left = [Corner::default(); MAX_CORNERS];
     left[..corners.len()].copy_from_slice(corners);
     let mut count = corners.len();
@@ -148,22 +156,15 @@ fn for_each_ear(corners: &[Corner], turn: i64, mut emit: impl FnMut([Corner; 3])
         let ring = &left[..count];
         let triple = |k: usize| [(k + count - 1) % count, k, (k + 1) % count];
         let turn_at = |k: usize| doubled_area(triple(k).map(|i| ring[i].position)).signum() * turn;
-        let flat = (0..count).find(|&k| turn_at(k) == 0);
+        let flat = || (0..count).find(|&k| turn_at(k) == 0);
         let ear = || (0..count).find(|&k| turn_at(k) > 0 && is_free(ring, triple(k), turn));
-        // A polygon that crosses itself within a unit may have no ear: take any corner that turns its way.
         let any = || (0..count).find(|&k| turn_at(k) > 0);
-        let Some(k) = flat.or_else(ear).or_else(any) else {
-            return;
-        };
-        if flat.is_none() {
-            emit(triple(k).map(|i| ring[i]));
-        }
+        let k = flat().or_else(ear).or_else(any).unwrap_or(0);
+        emit(triple(k).map(|i| ring[i]));
         left.copy_within(k + 1..count, k);
         count -= 1;
     }
-    if doubled_area([0, 1, 2].map(|i| left[i].position)).signum() == turn {
-        emit([left[0], left[1], left[2]]);
-    }
+    emit([left[0], left[1], left[2]]);
 }
 
 /// Whether no other corner lies in the triangle of these three.
