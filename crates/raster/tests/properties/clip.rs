@@ -60,12 +60,12 @@ proptest! {
             assemble_triangle(source, corners.map(|p| camera(tilt(p))), &view, Cull::None, &mut out);
         }
         let counts = count(&out, whole(view), &pattern);
-        for (&(pixel, sample), &owners) in &counts.plain {
+        for ((pixel, sample), owners) in counts.plain.iter() {
             let at = UVec2::from(pixel).as_dvec2() + pattern.positions()[sample].as_dvec2() / 256.0;
             let ndc = at / f64::from(SIDE) * DVec2::new(2.0, -2.0) + DVec2::new(-1.0, 1.0);
             // The ray hits the plane y = height + roll·x at this depth.
             let depth = height / (ndc.y - roll * ndc.x);
-            let winding = counts.signed[&(pixel, sample)];
+            let winding = counts.signed.of(pixel, sample);
             // Away from the mesh's far border by three units of the grid at least.
             let rise = height.abs() * (1.0 / depth - 1.0 / reach) * f64::from(SIDE) * 128.0;
             if depth > 0.2 && rise > 3.0 && depth * (1.0 + ndc.x.abs()) < 0.9 * reach {
@@ -87,7 +87,7 @@ proptest! {
         for corners in ground(n, &jitter, height, 400.0) {
             assemble_triangle(0, corners.map(camera_with_far), &view, Cull::None, &mut out);
         }
-        for (&(pixel, sample), &owners) in &count(&out, whole(view), &pattern).plain {
+        for ((pixel, sample), owners) in count(&out, whole(view), &pattern).plain.iter() {
             let y = (f64::from(pixel[1]) + f64::from(pattern.positions()[sample].y) / 256.0) / f64::from(SIDE);
             let depth = height / (1.0 - 2.0 * y);
             let seen = depth > 0.0 && depth < 50.0;
@@ -107,7 +107,7 @@ proptest! {
         let triangles = assembled(corners.map(|p| DVec4::new(p.x, p.y, 0.5, 1.0)), viewport());
         prop_assert!(!triangles.is_empty());
         let counts = count(&triangles, whole(viewport()), &pattern(8));
-        for (&(pixel, sample), &owners) in &counts.plain {
+        for ((pixel, sample), owners) in counts.plain.iter() {
             let at = UVec2::from(pixel).as_dvec2() + pattern(8).positions()[sample].as_dvec2() / 256.0;
             let ndc = at / f64::from(SIDE) * DVec2::new(2.0, -2.0) + DVec2::new(-1.0, 1.0);
             let height = (ndc - foot).dot(across);
@@ -127,13 +127,13 @@ proptest! {
         let [above, below] = apexes.map(|[x, y]| corner(x, y, 1.0));
         let mut out = assembled([left, right, above], viewport());
         out.extend(assembled([below, right, left], viewport()));
-        for (sample, owners) in &count(&out, whole(viewport()), &pattern).plain {
-            prop_assert!(*owners <= 1, "{owners} owners of {sample:?}");
+        for (sample, owners) in count(&out, whole(viewport()), &pattern).plain.iter() {
+            prop_assert!(owners <= 1, "{owners} owners of {sample:?}");
         }
         // Just around the shared edge both sides are inside: a column of samples has no hole.
         let column = rect([SIDE / 2, 0], [SIDE / 2 + 1, SIDE]);
         let counts = count(&out, column, &pattern);
-        let covered: Vec<_> = counts.plain.iter().map(|(&(pixel, _), &n)| (pixel[1], n)).collect();
+        let covered: Vec<_> = counts.plain.iter().map(|((pixel, _), n)| (pixel[1], n)).collect();
         let near_edge = covered.iter().filter(|(row, _)| (28..36).contains(row));
         prop_assert!(near_edge.clone().all(|&(_, n)| n == 1), "{:?}", near_edge.collect::<Vec<_>>());
     }
@@ -226,7 +226,7 @@ fn a_triangle_around_the_eye_fills_the_view() {
         counts
             .plain
             .iter()
-            .all(|(&(pixel, _), &n)| n == 0 || pixel[1] == 32)
+            .all(|((pixel, _), n)| n == 0 || pixel[1] == 32)
     );
     let steep = corners.map(|p| camera(DVec3::new(p.x, p.y * 1e4, p.z)));
     let counts = count(
@@ -238,7 +238,7 @@ fn a_triangle_around_the_eye_fills_the_view() {
         counts
             .plain
             .iter()
-            .all(|(&(pixel, _), &n)| n == i32::from(pixel[1] >= 32))
+            .all(|((pixel, _), n)| n == i32::from(pixel[1] >= 32))
     );
 }
 
