@@ -176,3 +176,57 @@ fn is_free(ring: &[Corner], ear: [usize; 3], turn: i64) -> bool {
     };
     !ring.iter().any(|corner| holds(corner.position))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Twice the areas of the pieces, as far as they have any.
+    fn piece_areas(points: &[IVec2]) -> Vec<i64> {
+        let corners: Vec<Corner> = points
+            .iter()
+            .map(|&position| Corner {
+                position,
+                ..Corner::default()
+            })
+            .collect();
+        let mut areas = Vec::new();
+        for_each_ear(&corners, |ear| {
+            areas.push(doubled_area(ear.map(|c| c.position)))
+        });
+        areas.retain(|&area| area != 0);
+        areas
+    }
+
+    #[test]
+    fn ears_stay_inside_a_border_that_snapping_bent_inward() {
+        // A kite whose corner (1, 1) lies inside the line from (0, 3) to (3, 0): twice its area is 6. A fan from
+        // the wrong corner covers 9 − 3.
+        let kite = [(0, 0), (0, 3), (1, 1), (3, 0)].map(|(x, y)| IVec2::new(x, y));
+        for start in 0..4 {
+            let mut turned = kite;
+            turned.rotate_left(start);
+            let areas = piece_areas(&turned);
+            assert_eq!(areas.iter().sum::<i64>(), -6, "{areas:?}");
+            assert!(
+                areas.iter().all(|&area| area < 0),
+                "{areas:?} from corner {start}"
+            );
+        }
+    }
+
+    #[test]
+    fn corners_on_a_line_cost_no_area() {
+        let square =
+            [(0, 0), (0, 4), (2, 4), (4, 4), (4, 4), (4, 0), (1, 0)].map(|(x, y)| IVec2::new(x, y));
+        assert_eq!(piece_areas(&square).iter().sum::<i64>(), -32);
+    }
+
+    #[test]
+    fn a_crossed_border_keeps_fronts_minus_backs() {
+        let bow_tie = [(0, 0), (4, 4), (4, 0), (0, 6)].map(|(x, y)| IVec2::new(x, y));
+        let fan = doubled_area([bow_tie[0], bow_tie[1], bow_tie[2]])
+            + doubled_area([bow_tie[0], bow_tie[2], bow_tie[3]]);
+        assert_eq!(piece_areas(&bow_tie).iter().sum::<i64>(), fan);
+    }
+}

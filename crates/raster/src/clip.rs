@@ -166,3 +166,35 @@ impl ClipVolume {
         Some(ends)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_cut_is_the_same_bits_from_either_end() {
+        // Edges of all slants through the near plane, from a fixed sequence of fractions.
+        let fraction =
+            |k: u32| f64::from(k.wrapping_mul(2_654_435_769)) / f64::from(u32::MAX) - 0.5;
+        let vertex = |k: u32, w: f64| ClipVertex {
+            clip: DVec4::new(fraction(k) * 9.0, fraction(k + 1), 0.1, w),
+            source: DVec3::new(fraction(k + 2), fraction(k + 3), 0.0),
+        };
+        for k in 0..1000 {
+            let (ahead, behind) = (
+                vertex(5 * k, 3.0 + fraction(k)),
+                vertex(7 * k + 1, -fraction(k).abs()),
+            );
+            let [d, e] = [ahead, behind].map(|v| ClipVolume::distance(0, glam::DVec2::ONE, v.clip));
+            let (one, other) = (
+                crossing(&ahead, d, &behind, e),
+                crossing(&behind, e, &ahead, d),
+            );
+            assert_eq!(
+                (one.clip, one.source),
+                (other.clip, other.source),
+                "edge {k}"
+            );
+        }
+    }
+}

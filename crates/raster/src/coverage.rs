@@ -7,7 +7,6 @@
 use glam::UVec2;
 
 use crate::edge::Edge;
-use crate::samples::MAX_SAMPLES;
 use crate::tile::Rect;
 use crate::viewport::SUBPIXELS;
 use crate::{SamplePattern, Triangle};
@@ -44,13 +43,14 @@ pub(crate) struct CoveredPixel {
     pub(crate) mask: u64,
 }
 
+/// For each sample the change of the three edges on the way to it from its pixel's corner.
+pub(crate) type Offsets = Vec<[i64; 3]>;
+
 /// A triangle prepared for a pattern.
 #[derive(Clone, Debug)]
 pub(crate) struct Scan {
     set: EdgeSet,
-    /// Change of each edge from a pixel's corner to each sample.
-    offsets: [[i64; MAX_SAMPLES]; 3],
-    count: usize,
+    offsets: Offsets,
     full: u64,
 }
 
@@ -113,20 +113,24 @@ impl EdgeSet {
 }
 
 impl Scan {
-    pub(crate) fn new(triangle: &Triangle, pattern: &SamplePattern) -> Self {
+    /// `memory` is used again for the offsets; [`into_memory`](Self::into_memory) gives it back.
+    pub(crate) fn new(triangle: &Triangle, pattern: &SamplePattern, memory: Offsets) -> Self {
         let set = EdgeSet::new(triangle);
-        let mut offsets = [[0; MAX_SAMPLES]; 3];
-        for (edge, offsets) in set.edges.iter().zip(&mut offsets) {
-            for (offset, position) in offsets.iter_mut().zip(pattern.positions()) {
-                *offset = edge.a * i64::from(position.x) + edge.b * i64::from(position.y);
-            }
-        }
+        let mut offsets = memory;
+        offsets.clear();
+        offsets.extend(pattern.positions().iter().map(|position| {
+            let (x, y) = (i64::from(position.x), i64::from(position.y));
+            set.edges.map(|edge| edge.a * x + edge.b * y)
+        }));
         Self {
             set,
             offsets,
-            count: pattern.count(),
             full: pattern.full_mask(),
         }
+    }
+
+    pub(crate) fn into_memory(self) -> Offsets {
+        self.offsets
     }
 
     /// Calls `covered` for each pixel of `area` of which a sample is covered, row by row.
@@ -161,8 +165,8 @@ impl Scan {
 
     /// Values of edges 1 and 2 at a sample of a pixel, as the depth plane wants them.
     pub(crate) fn depth_edges(&self, at: &CoveredPixel, sample: usize) -> (i64, i64) {
-        let value = |i: usize| at.corner[i] + self.offsets[i][sample];
-        (value(1), value(2))
+        let offset = self.offsets[sample];
+        (at.corner[1] + offset[1], at.corner[2] + offset[2])
     }
 
     fn pixel_mask(&self, corner: [i64; 3], spread: [(i64, i64); 3]) -> u64 {
@@ -176,11 +180,9 @@ impl Scan {
     fn sample_mask(&self, corner: [i64; 3]) -> u64 {
         let biased = [0, 1, 2].map(|i| corner[i] + self.set.bias[i]);
         let mut mask = 0;
-        for sample in 0..self.count {
+        for (sample, offset) in self.offsets.iter().enumerate() {
             // The sign bit of the union is set where any edge is negative.
-            let union = (biased[0] + self.offsets[0][sample])
-                | (biased[1] + self.offsets[1][sample])
-                | (biased[2] + self.offsets[2][sample]);
+            let union = (biased[0] + offset[0]) | (biased[1] + offset[1]) | (biased[2] + offset[2]);
             mask |= u64::from(union >= 0) << sample;
         }
         mask

@@ -2,7 +2,7 @@
 
 use glam::UVec2;
 
-use crate::coverage::{BLOCK, CoveredPixel, Scan, pixel_bounds};
+use crate::coverage::{BLOCK, CoveredPixel, Offsets, Scan, pixel_bounds};
 use crate::depth::DepthPlane;
 use crate::samples::MAX_SAMPLES;
 use crate::tile::Rect;
@@ -39,6 +39,8 @@ pub struct VisibilityTile {
     depths: Vec<f32>,
     owners: Vec<u32>,
     blocks: Vec<Block>,
+    /// Memory of the last triangle's scan.
+    offsets: Offsets,
 }
 
 /// What is known of 8×8 pixels without reading them.
@@ -65,6 +67,7 @@ impl VisibilityTile {
             depths: Vec::new(),
             owners: Vec::new(),
             blocks: Vec::new(),
+            offsets: Offsets::new(),
         }
     }
 
@@ -108,35 +111,40 @@ impl VisibilityTile {
         mut test: impl FnMut(UVec2, u64) -> u64,
     ) {
         debug_assert!(index != NOBODY, "u32::MAX stands for the background");
-        let scan = Scan::new(triangle, &self.pattern);
+        let memory = core::mem::take(&mut self.offsets);
+        let scan = Scan::new(triangle, &self.pattern, memory);
         let plane = triangle.depth_plane();
+        let mut depths = [0.0; MAX_SAMPLES];
         for (block, area) in blocks_of(triangle, self.rect) {
             if self.hides(block, plane.nearest()) {
                 continue;
             }
             scan.for_each_pixel(&area, |at| {
-                let mut depths = [0.0; MAX_SAMPLES];
-                let visible = self.in_front(&scan, &plane, &at, &mut depths);
+                let place = self.place(at.pixel);
+                let visible = self.in_front(place, &scan, &plane, &at, &mut depths);
                 if visible != 0 {
                     let kept = visible & test(at.pixel, visible);
-                    self.write(index, at.pixel, kept, &depths);
+                    self.write(index, place, kept, &depths);
                     self.blocks[block].written += kept.count_ones() as usize;
                 }
             });
         }
+        self.offsets = scan.into_memory();
     }
 
     /// Calls `found` with each pixel and the samples of it that a surface covers in front of what was drawn
     /// (greater depth, not equal). Writes nothing: for surfaces that blend.
     pub fn visit(&self, triangle: &Triangle, mut found: impl FnMut(UVec2, u64)) {
-        let scan = Scan::new(triangle, &self.pattern);
+        let scan = Scan::new(triangle, &self.pattern, Offsets::new());
         let plane = triangle.depth_plane();
+        let mut depths = [0.0; MAX_SAMPLES];
         for (block, area) in blocks_of(triangle, self.rect) {
             if self.blocks[block].farthest >= plane.nearest() {
                 continue;
             }
             scan.for_each_pixel(&area, |at| {
-                let visible = self.in_front(&scan, &plane, &at, &mut [0.0; MAX_SAMPLES]);
+                let place = self.place(at.pixel);
+                let visible = self.in_front(place, &scan, &plane, &at, &mut depths);
                 if visible != 0 {
                     found(at.pixel, visible);
                 }
@@ -210,12 +218,13 @@ impl VisibilityTile {
     /// Covered samples in front of the stored depth; their depths go to `depths`.
     fn in_front(
         &self,
+        place: usize,
         scan: &Scan,
         plane: &DepthPlane,
         at: &CoveredPixel,
         depths: &mut [f32; MAX_SAMPLES],
     ) -> u64 {
-        let stored = &self.depths[self.place(at.pixel)..][..self.pattern.count()];
+        let stored = &self.depths[place..][..self.pattern.count()];
         let (mut left, mut visible) = (at.mask, 0);
         while left != 0 {
             let sample = left.trailing_zeros() as usize;
@@ -227,8 +236,7 @@ impl VisibilityTile {
         visible
     }
 
-    fn write(&mut self, index: u32, pixel: UVec2, mask: u64, depths: &[f32; MAX_SAMPLES]) {
-        let place = self.place(pixel);
+    fn write(&mut self, index: u32, place: usize, mask: u64, depths: &[f32; MAX_SAMPLES]) {
         let mut left = mask;
         while left != 0 {
             let sample = left.trailing_zeros() as usize;

@@ -19,7 +19,8 @@ fn camera_with_far(p: DVec3) -> DVec4 {
     DVec4::new(p.x, p.y, slope * (p.z + far), -p.z)
 }
 
-/// A ground plane below the camera from far behind it to far ahead, cut into jittered cells.
+/// A ground plane below the camera from far behind it to far ahead, cut into jittered cells. A fifth of a cell
+/// of jitter cannot fold it over.
 fn ground(n: usize, jitter: &[[f64; 2]], height: f64, reach: f64) -> Vec<[DVec3; 3]> {
     let at = |column: usize, row: usize| {
         let inner = ![0, n].contains(&column) && ![0, n].contains(&row);
@@ -29,7 +30,7 @@ fn ground(n: usize, jitter: &[[f64; 2]], height: f64, reach: f64) -> Vec<[DVec3;
             [0.0; 2]
         };
         let place =
-            |k: usize, offset: f64| (2.0 * (k as f64 + 0.4 * offset) / n as f64 - 1.0) * reach;
+            |k: usize, offset: f64| (2.0 * (k as f64 + 0.2 * offset) / n as f64 - 1.0) * reach;
         DVec3::new(place(column, offset[0]), height, -place(row, offset[1]))
     };
     let cells = (0..n).flat_map(|row| (0..n).map(move |column| [column, row]));
@@ -60,12 +61,12 @@ proptest! {
             assemble_triangle(source, corners.map(|p| camera(tilt(p))), &view, Cull::None, &mut out);
         }
         let counts = count(&out, whole(view), &pattern);
-        for (&(pixel, sample), &owners) in &counts.plain {
+        for ((pixel, sample), owners) in counts.plain.iter() {
             let at = UVec2::from(pixel).as_dvec2() + pattern.positions()[sample].as_dvec2() / 256.0;
             let ndc = at / f64::from(SIDE) * DVec2::new(2.0, -2.0) + DVec2::new(-1.0, 1.0);
             // The ray hits the plane y = height + roll·x at this depth.
             let depth = height / (ndc.y - roll * ndc.x);
-            let winding = counts.signed[&(pixel, sample)];
+            let winding = counts.signed.of(pixel, sample);
             // Away from the mesh's far border by three units of the grid at least.
             let rise = height.abs() * (1.0 / depth - 1.0 / reach) * f64::from(SIDE) * 128.0;
             if depth > 0.2 && rise > 3.0 && depth * (1.0 + ndc.x.abs()) < 0.9 * reach {
@@ -87,27 +88,32 @@ proptest! {
         for corners in ground(n, &jitter, height, 400.0) {
             assemble_triangle(0, corners.map(camera_with_far), &view, Cull::None, &mut out);
         }
-        for (&(pixel, sample), &owners) in &count(&out, whole(view), &pattern).plain {
+        let counts = count(&out, whole(view), &pattern);
+        for ((pixel, sample), owners) in counts.plain.iter() {
             let y = (f64::from(pixel[1]) + f64::from(pattern.positions()[sample].y) / 256.0) / f64::from(SIDE);
             let depth = height / (1.0 - 2.0 * y);
             let seen = depth > 0.0 && depth < 50.0;
             // A unit of the grid around the far plane's line may round to either side.
             let line = (height / depth - height / 50.0).abs() * f64::from(SIDE) * 128.0 < 2.0;
-            prop_assert!(line || owners == i32::from(seen), "{} owners at depth {}", owners, depth);
+            let winding = counts.signed.of(pixel, sample);
+            prop_assert!(line || winding == i32::from(seen), "fronts minus backs {} at depth {}", winding, depth);
+            // Far off, pieces are thinner than a grid unit and may fold; not up here.
+            prop_assert!(!(0.0..20.0).contains(&depth) || owners == 1, "{} owners at depth {}", owners, depth);
         }
     }
 
     #[test]
-    fn a_triangle_beyond_the_guard_band_keeps_its_coverage(angle in 0.0..6.3f64, reach in 1e3..1e9f64, offset in -0.9..0.9f64) {
+    fn a_triangle_beyond_the_guard_band_keeps_its_coverage(half_tangent in -3.0..3.0f64, reach in 1e3..1e9f64, offset in -0.9..0.9f64) {
         // A half plane whose edge crosses the target: its far corners lie up to 10⁹ targets away.
-        let (sin, cos) = (angle.sin(), angle.cos());
+        let square = half_tangent * half_tangent;
+        let (sin, cos) = (2.0 * half_tangent / (1.0 + square), (1.0 - square) / (1.0 + square));
         let (along, across) = (DVec2::new(cos, sin), DVec2::new(-sin, cos));
         let foot = across * offset;
         let corners = [foot - along * reach, foot + along * reach, foot + across * reach];
         let triangles = assembled(corners.map(|p| DVec4::new(p.x, p.y, 0.5, 1.0)), viewport());
         prop_assert!(!triangles.is_empty());
         let counts = count(&triangles, whole(viewport()), &pattern(8));
-        for (&(pixel, sample), &owners) in &counts.plain {
+        for ((pixel, sample), owners) in counts.plain.iter() {
             let at = UVec2::from(pixel).as_dvec2() + pattern(8).positions()[sample].as_dvec2() / 256.0;
             let ndc = at / f64::from(SIDE) * DVec2::new(2.0, -2.0) + DVec2::new(-1.0, 1.0);
             let height = (ndc - foot).dot(across);
@@ -127,13 +133,13 @@ proptest! {
         let [above, below] = apexes.map(|[x, y]| corner(x, y, 1.0));
         let mut out = assembled([left, right, above], viewport());
         out.extend(assembled([below, right, left], viewport()));
-        for (sample, owners) in &count(&out, whole(viewport()), &pattern).plain {
-            prop_assert!(*owners <= 1, "{owners} owners of {sample:?}");
+        for (sample, owners) in count(&out, whole(viewport()), &pattern).plain.iter() {
+            prop_assert!(owners <= 1, "{owners} owners of {sample:?}");
         }
         // Just around the shared edge both sides are inside: a column of samples has no hole.
         let column = rect([SIDE / 2, 0], [SIDE / 2 + 1, SIDE]);
         let counts = count(&out, column, &pattern);
-        let covered: Vec<_> = counts.plain.iter().map(|(&(pixel, _), &n)| (pixel[1], n)).collect();
+        let covered: Vec<_> = counts.plain.iter().map(|((pixel, _), n)| (pixel[1], n)).collect();
         let near_edge = covered.iter().filter(|(row, _)| (28..36).contains(row));
         prop_assert!(near_edge.clone().all(|&(_, n)| n == 1), "{:?}", near_edge.collect::<Vec<_>>());
     }
@@ -226,7 +232,7 @@ fn a_triangle_around_the_eye_fills_the_view() {
         counts
             .plain
             .iter()
-            .all(|(&(pixel, _), &n)| n == 0 || pixel[1] == 32)
+            .all(|((pixel, _), n)| n == 0 || pixel[1] == 32)
     );
     let steep = corners.map(|p| camera(DVec3::new(p.x, p.y * 1e4, p.z)));
     let counts = count(
@@ -238,7 +244,7 @@ fn a_triangle_around_the_eye_fills_the_view() {
         counts
             .plain
             .iter()
-            .all(|(&(pixel, _), &n)| n == i32::from(pixel[1] >= 32))
+            .all(|((pixel, _), n)| n == i32::from(pixel[1] >= 32))
     );
 }
 

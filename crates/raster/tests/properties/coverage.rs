@@ -102,7 +102,7 @@ fn an_edge_through_a_thousand_pixel_centres_is_owned_on_one_side() {
     let left = on_grid([a, IVec2::new(a.x, b.y), b], view).expect("has area");
     let right = on_grid([a, b, IVec2::new(b.x, a.y)], view).expect("has area");
     let counts = oracle::count(&[left, right], whole(view), &pattern(1));
-    let on_diagonal = (1..1000u32).map(|k| counts.plain[&([k, k], 0)]);
+    let on_diagonal = (1..1000u32).map(|k| counts.plain.of([k, k], 0));
     assert!(on_diagonal.into_iter().all(|n| n == 1));
 }
 

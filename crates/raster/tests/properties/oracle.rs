@@ -1,7 +1,5 @@
 //! Brute force in wide integers and rationals; shares nothing with the crate but the conventions.
 
-use std::collections::BTreeMap;
-
 use glam::{IVec2, UVec2};
 use num_rational::BigRational;
 use raster::{Facing, Rect, SamplePattern, Triangle, VisibilityTile};
@@ -60,24 +58,65 @@ pub(crate) fn mask(corners: [IVec2; 3], pixel: UVec2, pattern: &SamplePattern) -
     })
 }
 
+/// A sample: its pixel and its index there.
+pub(crate) type Sample = ([u32; 2], usize);
+
+/// A number for each sample of a rectangle.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct Tally {
+    rect: Rect,
+    samples: usize,
+    numbers: Vec<i32>,
+}
+
+impl Tally {
+    fn zero(rect: Rect, samples: usize) -> Self {
+        let length = rect.pixels().count() * samples;
+        Self {
+            rect,
+            samples,
+            numbers: vec![0; length],
+        }
+    }
+
+    pub(crate) fn of(&self, pixel: [u32; 2], sample: usize) -> i32 {
+        self.numbers[self.place(pixel, sample)]
+    }
+
+    pub(crate) fn iter(&self) -> impl Iterator<Item = (Sample, i32)> {
+        let samples = self
+            .rect
+            .pixels()
+            .flat_map(|p| (0..self.samples).map(move |s| (p.to_array(), s)));
+        samples.zip(self.numbers.iter().copied())
+    }
+
+    pub(crate) fn all(&self, expected: i32) -> bool {
+        self.numbers.iter().all(|&n| n == expected)
+    }
+
+    fn place(&self, [x, y]: [u32; 2], sample: usize) -> usize {
+        let at = UVec2::new(x, y) - self.rect.min;
+        (at.y * self.rect.size().x + at.x) as usize * self.samples + sample
+    }
+}
+
 /// How often each sample is covered: counted with the sign of the side that is seen, and without.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug)]
 pub(crate) struct Counts {
-    pub(crate) signed: BTreeMap<([u32; 2], usize), i32>,
-    pub(crate) plain: BTreeMap<([u32; 2], usize), i32>,
+    pub(crate) signed: Tally,
+    pub(crate) plain: Tally,
 }
 
 /// Counts coverage over an empty tile, where every covered sample is in front.
 pub(crate) fn count(triangles: &[Triangle], rect: Rect, pattern: &SamplePattern) -> Counts {
     let mut tile = VisibilityTile::new(pattern);
     tile.reset(rect);
-    let mut counts = Counts::default();
-    for pixel in rect.pixels() {
-        for sample in 0..pattern.count() {
-            counts.signed.insert((pixel.to_array(), sample), 0);
-            counts.plain.insert((pixel.to_array(), sample), 0);
-        }
-    }
+    let zero = Tally::zero(rect, pattern.count());
+    let mut counts = Counts {
+        signed: zero.clone(),
+        plain: zero,
+    };
     for triangle in triangles {
         let sign = if triangle.facing() == Facing::Front {
             1
@@ -86,9 +125,9 @@ pub(crate) fn count(triangles: &[Triangle], rect: Rect, pattern: &SamplePattern)
         };
         tile.visit(triangle, |pixel, mask| {
             for sample in (0..pattern.count()).filter(|s| mask >> s & 1 == 1) {
-                let key = (pixel.to_array(), sample);
-                *counts.signed.get_mut(&key).expect("a pixel of the tile") += sign;
-                *counts.plain.get_mut(&key).expect("a pixel of the tile") += 1;
+                let place = counts.plain.place(pixel.to_array(), sample);
+                counts.signed.numbers[place] += sign;
+                counts.plain.numbers[place] += 1;
             }
         });
     }

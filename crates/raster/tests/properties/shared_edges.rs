@@ -21,8 +21,8 @@ fn triangles(mesh: &Mesh, weights: &[f64]) -> Vec<Triangle> {
 
 fn once(triangles: &[Triangle], area: Rect, pattern: &SamplePattern) -> Result<(), TestCaseError> {
     let counts = count(triangles, area, pattern);
-    for (sample, n) in &counts.plain {
-        prop_assert_eq!(*n, 1, "owners of sample {:?}", sample);
+    for (sample, n) in counts.plain.iter() {
+        prop_assert_eq!(n, 1, "owners of sample {:?}", sample);
     }
     Ok(())
 }
@@ -39,8 +39,8 @@ proptest! {
     #[test]
     fn a_folded_mesh_owns_every_sample_once_front_minus_back(mesh in lattice(SIDE, 9000), pattern in any_pattern(), w in [w(), w(), w()]) {
         let counts = count(&triangles(&mesh, &w), whole(viewport()), &pattern);
-        for (sample, n) in &counts.signed {
-            prop_assert_eq!(*n, 1, "fronts minus backs at sample {:?}", sample);
+        for (sample, n) in counts.signed.iter() {
+            prop_assert_eq!(n, 1, "fronts minus backs at sample {:?}", sample);
         }
     }
 
@@ -91,7 +91,7 @@ proptest! {
         let mesh = Mesh { points, triangles: corners };
         let counts = count(&triangles(&mesh, &[1.0]), whole(viewport()), &pattern);
         let expected = i32::from(n >= 40);
-        for (sample, &found) in &counts.plain {
+        for (sample, found) in counts.plain.iter() {
             prop_assert!((expected..=1).contains(&found), "sample {:?} has {} owners", sample, found);
         }
     }
@@ -119,10 +119,7 @@ fn a_quad_over_the_whole_target_has_no_seam() {
                 assemble_triangle(0, clip, &view, Cull::None, &mut out);
             }
             let counts = count(&out, whole(view), &pattern(1));
-            assert!(
-                counts.plain.values().all(|&n| n == 1),
-                "a seam at size {size}"
-            );
+            assert!(counts.plain.all(1), "a seam at size {size}");
         }
     }
 }
@@ -156,10 +153,7 @@ fn every_pattern_is_owned_once_on_a_crowded_corner() {
                 rect([14, 14], [18, 18]),
                 &pattern,
             );
-            assert!(
-                counts.plain.values().all(|&n| n == 1),
-                "{n} samples, hub {hub}"
-            );
+            assert!(counts.plain.all(1), "{n} samples, hub {hub}");
         }
     }
 }

@@ -17,7 +17,7 @@ proptest! {
         assemble_line(5, clip, &viewport(), &mut out);
         let [from, to] = ends.map(|p| p.as_dvec2() / 256.0);
         let length = (to - from).length();
-        for (&(pixel, sample), &owners) in &count(&out, whole(viewport()), &pattern).plain {
+        for ((pixel, sample), owners) in count(&out, whole(viewport()), &pattern).plain.iter() {
             prop_assert!((0..=1).contains(&owners), "{} owners", owners);
             let at = UVec2::from(pixel).as_dvec2() + pattern.positions()[sample].as_dvec2() / 256.0;
             let along = (at - from).dot(to - from) / length;
@@ -40,7 +40,7 @@ proptest! {
     fn a_point_is_one_pixel(at in grid_point(SIDE), w in w()) {
         let mut out = Vec::new();
         assemble_point(9, clip_at(viewport(), at, 0.25, w), &viewport(), &mut out);
-        let owned: Vec<_> = count(&out, whole(viewport()), &pattern(1)).plain.into_iter().filter(|(_, n)| *n != 0).collect();
+        let owned: Vec<_> = count(&out, whole(viewport()), &pattern(1)).plain.iter().filter(|(_, n)| *n != 0).collect();
         // The square of 256 units around it holds one centre; of two on its border the left and upper one.
         let pixel = at.map(|x| (x - 1).div_euclid(256));
         let inside = pixel.cmpge(IVec2::ZERO).all() && pixel.cmplt(IVec2::splat(SIDE as i32)).all();
@@ -87,7 +87,7 @@ fn lines_through_the_near_plane_are_cut() {
         );
         // From y = −1/5 at the far end down to the target's border and beyond.
         let counts = count(&out, whole(viewport()), &pattern(1));
-        let rows = (39..64u32).map(|y| counts.plain[&([31, y], 0)] + counts.plain[&([32, y], 0)]);
+        let rows = (39..64u32).map(|y| counts.plain.of([31, y], 0) + counts.plain.of([32, y], 0));
         assert!(rows.into_iter().all(|n| n == 1));
     }
 }

@@ -156,16 +156,26 @@ proptest! {
 
 #[test]
 fn at_equal_depth_the_first_drawn_keeps_the_sample() {
-    let corners = [(0, 0), (0, 8192), (8192, 0)].map(|(x, y)| IVec2::new(x, y));
-    let twin = on_grid(corners, viewport()).expect("has area");
-    let mut tile = VisibilityTile::new(&pattern(4));
-    tile.reset(rect([0, 0], [8, 8]));
-    tile.draw(4, &twin);
-    tile.draw(2, &twin);
-    assert_eq!(tile.owner(UVec2::ZERO, 0), Some(4));
-    tile.visit(&twin, |pixel, _| {
-        panic!("{pixel} is not in front of itself")
-    });
+    // Once flat over the whole tile, once sloped over half of it, where no block is hidden as a whole.
+    let flat = [(0, 0, 0.5), (0, 8192, 0.5), (8192, 0, 0.5)];
+    let sloped = [(0, 0, 0.9), (0, 2048, 0.3), (2048, 0, 0.1)];
+    for corners in [flat, sloped] {
+        let clip = corners.map(|(x, y, depth)| clip_at(viewport(), IVec2::new(x, y), depth, 1.0));
+        let twin = assembled(clip, viewport()).pop().expect("has area");
+        let mut tile = VisibilityTile::new(&pattern(4));
+        tile.reset(rect([0, 0], [8, 8]));
+        tile.draw(4, &twin);
+        tile.draw(2, &twin);
+        let owners = tile
+            .rect()
+            .pixels()
+            .flat_map(|p| (0..4).map(move |s| (p, s)));
+        assert!(owners.into_iter().all(|(p, s)| tile.owner(p, s) != Some(2)));
+        assert_eq!(tile.owner(UVec2::ZERO, 0), Some(4));
+        tile.visit(&twin, |pixel, _| {
+            panic!("{pixel} is not in front of itself")
+        });
+    }
 }
 
 #[test]

@@ -100,7 +100,7 @@ fn it_is_closed_but_for_its_known_gaps() {
     assert_eq!(open.len() as u32, (4 + 4 + 4 + 4) * STEPS);
     for ends in open {
         let [x, y, z] = ends[0].map(f32::from_bits);
-        let radius = x.hypot(y);
+        let radius = Vec2::new(x, y).length();
         let lid_or_rim = z == 2.4 && (1.29..1.45).contains(&radius);
         let spout = x == 1.7 || ((2.79..=3.21).contains(&x) && z == 2.4);
         let handle = (-1.61..=-1.49).contains(&x) || (-2.01..=-1.89).contains(&x);
