@@ -1,0 +1,13 @@
+//! The laws of texture coordinates, stated once and held over inputs that seek trouble.
+#![forbid(unsafe_code)]
+#![expect(
+    clippy::cast_possible_truncation,
+    reason = "strategies make grid points and exponents from fractions"
+)]
+
+mod oracle;
+mod patch;
+mod perspective;
+mod strategies;
+mod teapot;
+mod transform;
