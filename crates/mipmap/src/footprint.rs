@@ -52,57 +52,92 @@ pub struct Axes {
 /// assert!((axes.major - 4.0).abs() < 1e-5 && (axes.minor - 1.0).abs() < 1e-5);
 /// ```
 pub fn footprint_axes(size: UVec2, dst_dx: Vec2, dst_dy: Vec2) -> Axes {
-    if !(dst_dx.is_finite() && dst_dy.is_finite()) {
-        return Axes::UNBOUNDED;
-    }
-
-    // Texel space, in f64: squares of squares of any f32 times any size stay far from f64's ends.
-    let scale = size.as_dvec2();
-    let a = dst_dx.as_dvec2() * scale;
-    let b = dst_dy.as_dvec2() * scale;
-
-    // Singular values.
-    let sum = a.length_squared() + b.length_squared();
-    let difference = a.length_squared() - b.length_squared();
-    let twice_dot = 2.0 * a.dot(b);
-    let root = (difference * difference + twice_dot * twice_dot).sqrt();
-    let major = ((sum + root) * 0.5).sqrt();
-    if major > f64::from(f32::MAX) {
-        return Axes::UNBOUNDED;
-    }
-    if major == 0.0 {
-        return Axes {
-            major: 0.0,
-            minor: 0.0,
-            direction: Vec2::ZERO,
-        };
-    }
-    let [sx, tx, sy, ty] = [dst_dx.x, dst_dx.y, dst_dy.x, dst_dy.y].map(f64::from);
-    let determinant = (sx * ty - tx * sy).abs() * (scale.x * scale.y);
-
-    let direction = major_direction(a, b) * major / scale;
+    let lengths = AxisLengths::of(size, dst_dx, dst_dy);
     Axes {
-        major: round_to_f32(major),
-        minor: round_to_f32((determinant / major).min(major)),
-        direction: direction.as_vec2(),
+        major: lengths.major,
+        minor: lengths.minor,
+        direction: lengths.direction(),
+    }
+}
+
+/// The lengths alone, with what the direction is made from: most lookups do not ask for it.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct AxisLengths {
+    pub(crate) major: f32,
+    pub(crate) minor: f32,
+    /// Texels per unit of st.
+    scale: DVec2,
+    /// The derivatives in texels.
+    a: DVec2,
+    b: DVec2,
+}
+
+impl AxisLengths {
+    #[inline]
+    pub(crate) fn of(size: UVec2, dst_dx: Vec2, dst_dy: Vec2) -> Self {
+        // Texel space, in f64: squares of squares of any f32 times any size stay far from f64's ends.
+        let scale = size.as_dvec2();
+        let a = dst_dx.as_dvec2() * scale;
+        let b = dst_dy.as_dvec2() * scale;
+
+        // Singular values.
+        let [aa, bb] = [a.length_squared(), b.length_squared()];
+        let difference = aa - bb;
+        let twice_dot = 2.0 * a.dot(b);
+        let root = (difference * difference + twice_dot * twice_dot).sqrt();
+        let major = ((aa + bb + root) * 0.5).sqrt();
+        let [sx, tx, sy, ty] = [dst_dx.x, dst_dx.y, dst_dy.x, dst_dy.y].map(f64::from);
+        let determinant = (sx * ty - tx * sy).abs() * (scale.x * scale.y);
+
+        // Written so that NaN takes the second branch too.
+        let [major, minor] = if major <= f64::from(f32::MAX) {
+            let minor = if major > 0.0 {
+                (determinant / major).min(major)
+            } else {
+                0.0
+            };
+            [round_to_f32(major), round_to_f32(minor)]
+        } else {
+            [f32::INFINITY; 2]
+        };
+        Self {
+            major,
+            minor,
+            scale,
+            a,
+            b,
+        }
+    }
+
+    /// major / minor, at least 1; ∞ for a line, 1 for a point or an unbounded footprint.
+    #[inline]
+    pub(crate) fn anisotropy(&self) -> f32 {
+        aspect(self.major, self.minor)
+    }
+
+    /// The longer axis from end to end, in st.
+    pub(crate) fn direction(&self) -> Vec2 {
+        if self.major == 0.0 || self.major.is_infinite() {
+            return Vec2::ZERO;
+        }
+        (major_direction(self.a, self.b) * f64::from(self.major) / self.scale).as_vec2()
     }
 }
 
 impl Axes {
-    const UNBOUNDED: Self = Self {
-        major: f32::INFINITY,
-        minor: f32::INFINITY,
-        direction: Vec2::ZERO,
-    };
-
     /// major / minor, at least 1; ∞ for a line, 1 for a point or an unbounded footprint.
     pub fn anisotropy(&self) -> f32 {
-        if self.major.is_infinite() || self.major == 0.0 {
-            1.0
-        } else {
-            // x / 0 is ∞ for the line.
-            (self.major / self.minor).max(1.0)
-        }
+        aspect(self.major, self.minor)
+    }
+}
+
+#[inline]
+fn aspect(major: f32, minor: f32) -> f32 {
+    if major.is_infinite() || major == 0.0 {
+        1.0
+    } else {
+        // x / 0 is ∞ for the line.
+        (major / minor).max(1.0)
     }
 }
 

@@ -1,7 +1,7 @@
 use glam::{DVec2, DVec4, UVec2, Vec4};
 use sampler::{AddressMode, Filter};
 
-use crate::footprint::{Axes, Footprint, footprint_axes};
+use crate::footprint::{AxisLengths, Footprint};
 use crate::probes::Probes;
 use crate::pyramid::Pyramid;
 
@@ -51,7 +51,7 @@ impl Default for SamplerState {
 
 /// The colour under `footprint`.
 ///
-/// With major and minor the footprint's axes in texels ([`footprint_axes`]):
+/// With major and minor the footprint's axes in texels ([`crate::footprint_axes`]):
 ///
 /// ```text
 /// η = min(major/minor, max_anisotropy, max(major, 1))      λ = log₂(major/η)
@@ -103,7 +103,7 @@ pub fn sample_with_lod(
     }
 
     // Which levels, and how many probes.
-    let axes = footprint_axes(pyramid.size(), footprint.dst_dx, footprint.dst_dy);
+    let axes = AxisLengths::of(pyramid.size(), footprint.dst_dx, footprint.dst_dy);
     let eta = followed_anisotropy(&axes, max_anisotropy);
     let lambda = libm::log2f(axes.major / eta);
     let filter = if lambda > 0.0 {
@@ -122,13 +122,13 @@ pub fn sample_with_lod(
     if eta == 1.0 {
         return (at(footprint.st).as_vec4(), levels.lod());
     }
-    let probes = Probes::along(axes.direction.as_dvec2(), eta);
+    let probes = Probes::along(axes.direction().as_dvec2(), eta);
     let sum = probes.map_sum(|offset| at(footprint.st + offset));
     (sum.as_vec4(), levels.lod())
 }
 
 /// η: the aspect that probes follow.
-fn followed_anisotropy(axes: &Axes, max_anisotropy: f32) -> f32 {
+fn followed_anisotropy(axes: &AxisLengths, max_anisotropy: f32) -> f32 {
     axes.anisotropy()
         .min(max_anisotropy)
         .min(axes.major.max(1.0))

@@ -33,8 +33,10 @@ pub enum AddressMode {
 /// Fractional bits of a texel-space position.
 const FRACTION_BITS: u32 = 61;
 const ONE: i64 = 1 << FRACTION_BITS;
-/// From here on every f64 is an integer.
+/// 2⁵²: from here on every f64 is an integer.
 const ALL_INTEGERS_FROM: f64 = 4_503_599_627_370_496.0;
+/// 2⁵¹: beyond it f64s are ½ apart and more, which is no position in a texture; they count as integers.
+const FLOOR_BELOW: f64 = 0.5 * ALL_INTEGERS_FROM;
 
 /// A tap outside the texture, where the border colour lies. No stored index reaches it: indices are below a size.
 pub(crate) const OUTSIDE: u32 = u32::MAX;
@@ -48,6 +50,13 @@ pub(crate) struct Taps {
     pub(crate) far: u32,
     /// Weight of `far`, in \[0, ½\].
     pub(crate) far_weight: f64,
+}
+
+impl Taps {
+    #[inline(always)]
+    pub(crate) fn reads_border(self) -> bool {
+        self.near == OUTSIDE || self.far == OUTSIDE
+    }
 }
 
 impl AddressMode {
@@ -94,23 +103,36 @@ impl AddressMode {
     }
 
     /// The two texels whose centres lie on either side of the coordinate.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn linear_taps(self, coordinate: f64, size: u32) -> Taps {
         let from_centre = self.position(coordinate, size) - i128::from(ONE / 2);
         let left = whole(from_centre);
         let fraction = fraction(from_centre);
+        let (left, right) = match u32::try_from(left) {
+            // Both inside, as nearly always.
+            Ok(inside) if inside < size - 1 => (inside, inside + 1),
+            _ => (
+                self.resolve_or_outside(left, size),
+                self.resolve_or_outside(left + 1, size),
+            ),
+        };
         // Name the nearer texel first: the blend then starts from it and cannot overshoot.
         let (near, far, weight) = if fraction <= ONE / 2 {
-            (left, left + 1, fraction)
+            (left, right, fraction)
         } else {
-            (left + 1, left, ONE - fraction)
+            (right, left, ONE - fraction)
         };
         let far = if weight == 0 { near } else { far };
         Taps {
-            near: self.resolve(near, size).unwrap_or(OUTSIDE),
-            far: self.resolve(far, size).unwrap_or(OUTSIDE),
-            far_weight: weight as f64 / ONE as f64,
+            near,
+            far,
+            far_weight: weight as f64 * (1.0 / ONE as f64),
         }
+    }
+
+    #[inline]
+    fn resolve_or_outside(self, index: i64, size: u32) -> u32 {
+        self.resolve(index, size).unwrap_or(OUTSIDE)
     }
 
     /// Position in texel space, in units of 2⁻⁶¹ texel, reduced to one period or to just outside the texture.
@@ -130,10 +152,14 @@ impl AddressMode {
 
 /// x − ⌊x⌋ in units of 2⁻⁶¹, never a whole one. 0 for infinities and NaN.
 #[inline]
+#[allow(
+    clippy::cast_possible_truncation,
+    reason = "0 ≤ x − ⌊x⌋ ≤ 1, where truncation is the floor"
+)]
 fn fixed_fraction(x: f64) -> i64 {
-    if x.abs() < ALL_INTEGERS_FROM {
+    if x.abs() < FLOOR_BELOW {
         // x − ⌊x⌋ rounds to 1 just below an integer; there the last position below it is meant.
-        fixed(x - floor_small(x)).min(ONE - 1)
+        (((x - floor_small(x)) * ONE as f64) as i64).min(ONE - 1)
     } else {
         0
     }
@@ -151,19 +177,13 @@ fn fixed(x: f64) -> i64 {
     truncated - i64::from(truncated as f64 > scaled)
 }
 
-/// ⌊x⌋ for |x| < 2⁵², without a call into the platform's library.
+/// ⌊x⌋ for |x| < 2⁵¹, without a call into the platform's library.
+///
+/// Next to 1.5·2⁵² f64s are 1 apart, so adding it rounds to an integer and subtracting it is exact.
 #[inline]
-#[allow(
-    clippy::cast_possible_truncation,
-    reason = "the caller keeps |x| below 2⁵²"
-)]
 fn floor_small(x: f64) -> f64 {
-    let truncated = x as i64 as f64;
-    if truncated > x {
-        truncated - 1.0
-    } else {
-        truncated
-    }
+    let rounded = (x + 1.5 * ALL_INTEGERS_FROM) - 1.5 * ALL_INTEGERS_FROM;
+    if rounded > x { rounded - 1.0 } else { rounded }
 }
 
 /// The texel index of a fixed-point position.

@@ -37,7 +37,7 @@
 //!
 //! | what | bound | test |
 //! | --- | --- | --- |
-//! | texel chosen by [`nearest`] | exact for every f64 coordinate | `tests/properties/address.rs` |
+//! | texel chosen by [`nearest`] | exact below 2⁵¹ repeats | `tests/properties/address.rs` |
 //! | [`bilinear`] | [`BILINEAR_MAX_ERROR_ULPS`] ulp of the largest texel read | `tests/properties/bilinear.rs` |
 //! | envelope, constants | exact | `tests/properties/bilinear.rs` |
 //! | sRGB decode, 8 and 16 bit | nearest f32 | `tests/properties/transfer.rs` |

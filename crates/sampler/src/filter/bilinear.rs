@@ -72,11 +72,19 @@ pub fn bilinear(texture: &Texture, modes: [AddressMode; 2], st: DVec2) -> Vec4 {
 /// Blends in f32: enough for integer texels, whose values are already rounded to 2⁻¹⁶ or coarser.
 #[inline(always)]
 fn blend(s: Taps, t: Taps, stride: usize, read: impl Fn(usize) -> Vec4) -> Vec4 {
+    if s.reads_border() || t.reads_border() {
+        blend_taps(s, t, |i, j| tap(i, j, stride, &read))
+    } else {
+        blend_taps(s, t, |i, j| read(j as usize * stride + i as usize))
+    }
+}
+
+#[inline(always)]
+fn blend_taps(s: Taps, t: Taps, tap: impl Fn(u32, u32) -> Vec4) -> Vec4 {
     let [alpha, beta] = [weight_f32(s.far_weight), weight_f32(t.far_weight)];
     let row = |j: u32| {
-        let near = tap(s.near, j, stride, &read);
-        let far = tap(s.far, j, stride, &read);
-        near + (far - near) * alpha
+        let near = tap(s.near, j);
+        near + (tap(s.far, j) - near) * alpha
     };
     let near = row(t.near);
     near + (row(t.far) - near) * beta

@@ -10,7 +10,8 @@ use crate::texture::Texture;
 /// lies outside on its side, so it gives the edge texel or the border.
 ///
 /// # Accuracy
-/// Exact: the texel of the exact product, where an f64 product would round across a texel's edge.
+/// Exact: the texel of the exact product, where an f64 product would round across a texel's edge. Repeating
+/// coordinates of 2⁵¹ and beyond count as integers.
 /// # Source
 /// Vulkan 1.3, "Texel Coordinate Systems" and "Nearest filtering" (⌊u⌋).
 /// # Examples
