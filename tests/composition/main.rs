@@ -1,0 +1,18 @@
+//! Several crates working together, through the facade and through the program.
+#![expect(
+    clippy::cast_possible_truncation,
+    reason = "test scenes and pictures are small"
+)]
+
+mod animation;
+mod assets;
+mod bad_input;
+mod determinism;
+mod filtering;
+mod glb;
+mod hard_cases;
+mod lighting;
+mod needs;
+mod output;
+mod reading;
+mod showcase;

@@ -80,10 +80,10 @@ impl Default for View {
 /// A view from around the scene.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Orbit {
-    /// Degrees around Y from +Z toward +X.
-    pub azimuth_degrees: f64,
-    /// Degrees above the horizon, −90..=90.
-    pub elevation_degrees: f64,
+    /// Degrees around Y from +Z toward +X; chosen by the shape of the scene if `None`.
+    pub azimuth_degrees: Option<f64>,
+    /// Degrees above the horizon, −90..=90; chosen by the shape of the scene if `None`.
+    pub elevation_degrees: Option<f64>,
     /// From the centre of the bounds, in scene units; as near as shows everything if `None`.
     pub distance: Option<f64>,
     /// Vertical field of view, degrees, in 0..180.
@@ -96,8 +96,8 @@ pub const DEFAULT_FOV_Y_DEGREES: f64 = 30.0;
 impl Default for Orbit {
     fn default() -> Self {
         Self {
-            azimuth_degrees: 0.0,
-            elevation_degrees: 0.0,
+            azimuth_degrees: None,
+            elevation_degrees: None,
             distance: None,
             fov_y_degrees: DEFAULT_FOV_Y_DEGREES,
         }
@@ -246,8 +246,7 @@ impl Settings {
                 detail: "it must be a finite angle in degrees".to_owned(),
             });
         }
-        if self.background == Background::Environment
-            && self.environment == EnvironmentSource::None
+        if self.background == Background::Environment && self.environment == EnvironmentSource::None
         {
             return Err(Error::Setting {
                 setting: "--background",
@@ -267,7 +266,10 @@ impl View {
             Self::Default | Self::Camera(_) => DEFAULT_FOV_Y_DEGREES,
         };
         if !(fov > 0.0 && fov < 180.0) {
-            return error("--fov", format!("{fov} degrees; it must lie between 0 and 180"));
+            return error(
+                "--fov",
+                format!("{fov} degrees; it must lie between 0 and 180"),
+            );
         }
         match self {
             Self::LookAt { eye, target, .. } => {
@@ -279,13 +281,15 @@ impl View {
                 }
             }
             Self::Orbit(orbit) => {
-                if !(-90.0..=90.0).contains(&orbit.elevation_degrees) {
+                if let Some(degrees) = orbit.elevation_degrees
+                    && !(-90.0..=90.0).contains(&degrees)
+                {
                     return error(
                         "--elevation",
-                        format!("{} degrees; it must be −90 to 90", orbit.elevation_degrees),
+                        format!("{degrees} degrees; it must be −90 to 90"),
                     );
                 }
-                if !orbit.azimuth_degrees.is_finite() {
+                if orbit.azimuth_degrees.is_some_and(|a| !a.is_finite()) {
                     return error("--azimuth", "it must be finite".to_owned());
                 }
                 if orbit.distance.is_some_and(|d| !(d > 0.0 && d.is_finite())) {

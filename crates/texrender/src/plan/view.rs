@@ -9,6 +9,9 @@ use crate::settings::{Orbit, Settings, View};
 /// Share of the picture that automatic framing fills.
 const FRAME_FILL: f64 = 0.92;
 
+/// Share of its largest extent below which a shape counts as flat.
+const FLAT_SHARE: f64 = 0.1;
+
 /// An eye and what it sees.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Viewpoint {
@@ -152,10 +155,10 @@ fn looking_along(forward: DVec3) -> DMat3 {
 
 /// A view from around the scene.
 fn around(scene: &Scene, orbit: &Orbit, aspect: f64) -> Viewpoint {
-    let (azimuth, elevation) = (
-        orbit.azimuth_degrees.to_radians(),
-        orbit.elevation_degrees.to_radians(),
-    );
+    let world = Bounds::of(camera_points(scene, DMat3::IDENTITY));
+    let (azimuth, elevation) = shown_from(world.as_ref());
+    let azimuth = orbit.azimuth_degrees.unwrap_or(azimuth).to_radians();
+    let elevation = orbit.elevation_degrees.unwrap_or(elevation).to_radians();
     let back = DVec3::new(
         libm::sin(azimuth) * libm::cos(elevation),
         libm::sin(elevation),
@@ -167,7 +170,7 @@ fn around(scene: &Scene, orbit: &Orbit, aspect: f64) -> Viewpoint {
     let half_height = libm::tan(0.5 * orbit.fov_y_degrees.to_radians());
     let half = DVec2::new(half_height * aspect, half_height);
 
-    let Some(bounds) = Bounds::of(camera_points(scene, axes)) else {
+    let (Some(world), Some(bounds)) = (world, Bounds::of(camera_points(scene, axes))) else {
         return Viewpoint::new(
             axes * DVec3::Z,
             axes,
@@ -178,7 +181,6 @@ fn around(scene: &Scene, orbit: &Orbit, aspect: f64) -> Viewpoint {
     let radius = (0.5 * (bounds.max - bounds.min).length()).max(f64::MIN_POSITIVE);
     let eye = match orbit.distance {
         Some(distance) => {
-            let world = Bounds::of(camera_points(scene, DMat3::IDENTITY)).unwrap_or(bounds);
             let centre = axes.transpose() * (0.5 * (world.min + world.max));
             centre + DVec3::new(0.0, 0.0, distance)
         }
@@ -193,6 +195,20 @@ fn around(scene: &Scene, orbit: &Orbit, aspect: f64) -> Viewpoint {
         perspective(orbit.fov_y_degrees, near),
         aspect,
     )
+}
+
+/// Azimuth and elevation, degrees, that show a shape well.
+///
+/// A panel is looked at from its front, what lies flat from above, anything else from the front, a
+/// little to the right and above, so that three sides of a box are seen.
+fn shown_from(bounds: Option<&Bounds>) -> (f64, f64) {
+    let extent = bounds.map_or(DVec3::ONE, |b| b.max - b.min);
+    let flat = FLAT_SHARE * extent.max_element();
+    match (extent.z <= flat, extent.y <= flat) {
+        (true, _) => (0.0, 0.0),
+        (_, true) => (30.0, 50.0),
+        _ => (30.0, 20.0),
+    }
 }
 
 /// Finite vertices of the scene in the axes of a camera at the origin.
@@ -229,10 +245,5 @@ fn fitting_eye(scene: &Scene, axes: DMat3, half: DVec2, radius: f64) -> DVec3 {
     let z = ((edges[0] + edges[1]) / (2.0 * half.x))
         .max((edges[2] + edges[3]) / (2.0 * half.y))
         .max(front + 0.1 * radius);
-    DVec3::new(
-        0.5 * (edges[0] - edges[1]),
-        0.5 * (edges[2] - edges[3]),
-        z,
-    )
+    DVec3::new(0.5 * (edges[0] - edges[1]), 0.5 * (edges[2] - edges[3]), z)
 }
-

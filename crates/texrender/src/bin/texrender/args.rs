@@ -80,10 +80,11 @@ pub(crate) struct PictureArgs {
     /// Vertical field of view.
     #[arg(long, value_name = "DEGREES")]
     pub fov: Option<f64>,
-    /// Angle around the scene, from the front (+Z) toward the right (+X).
+    /// Angle around the scene, from the front (+Z) toward the right (+X). Left out: 0 for a panel that faces the
+    /// front, 30 otherwise.
     #[arg(long, value_name = "DEGREES", allow_negative_numbers = true)]
     pub azimuth: Option<f64>,
-    /// Angle above the horizon.
+    /// Angle above the horizon. Left out: 0 for a panel that faces the front, 50 for one that lies flat, 20 otherwise.
     #[arg(long, value_name = "DEGREES", allow_negative_numbers = true)]
     pub elevation: Option<f64>,
     /// Distance from the centre; as near as shows everything if left out.
@@ -93,7 +94,12 @@ pub(crate) struct PictureArgs {
     #[arg(long, value_name = "FILE|studio|none", default_value = "studio", value_parser = values::environment)]
     pub env: EnvironmentSource,
     /// Turn of the environment about the vertical.
-    #[arg(long, value_name = "DEGREES", default_value_t = 0.0, allow_negative_numbers = true)]
+    #[arg(
+        long,
+        value_name = "DEGREES",
+        default_value_t = 0.0,
+        allow_negative_numbers = true
+    )]
     pub env_rotation: f32,
     /// What is behind the scene: #rrggbb, transparent, or the environment.
     #[arg(long, value_name = "COLOR|transparent|env", default_value = "#333333", value_parser = values::background)]
@@ -169,8 +175,8 @@ impl PictureArgs {
             return View::Default;
         }
         View::Orbit(Orbit {
-            azimuth_degrees: self.azimuth.unwrap_or(0.0),
-            elevation_degrees: self.elevation.unwrap_or(0.0),
+            azimuth_degrees: self.azimuth,
+            elevation_degrees: self.elevation,
             distance: self.distance,
             fov_y_degrees,
         })
