@@ -25,7 +25,7 @@ const LANES: usize = 8;
 ///
 /// # Accuracy
 /// 1e-6 relative for constant light. For a sun of 20° over a dim sky, a table of 16² faces, its own interpolation
-/// included, is within 1 % of the brightest irradiance. Checked by `tests/properties/irradiance.rs`.
+/// included, is within 1.5 % of the brightest irradiance. Checked by `tests/properties/irradiance.rs`.
 /// # Source
 /// Ramamoorthi and Hanrahan 2001, "An Efficient Representation for Irradiance Environment Maps", eq. 1.
 pub fn irradiance_face(source: &CubePyramid, size: u32, face: CubeFace) -> Vec<Vec3> {

@@ -10,7 +10,7 @@ use crate::strategies::{cube, latlong};
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(24))]
 
-    /// One texel 10⁶ brighter, anywhere: by area where the map is finer, by lookups where it is coarser.
+    /// One texel 10⁶ brighter, anywhere, in maps of at least the cube's resolution.
     #[test]
     fn f4_a_hot_texel_keeps_its_energy(
         height in prop::sample::select(vec![32u32, 48, 63, 64, 128]), s in 0.0..1.0f64, t in 0.0..1.0f64,

@@ -135,7 +135,11 @@ pub(crate) fn size() -> impl Strategy<Value = UVec2> {
 }
 
 pub(crate) fn float_texture() -> impl Strategy<Value = Texture> {
-    (size(), 1u8..=4).prop_flat_map(|(size, channels)| {
+    (1u8..=4).prop_flat_map(float_texture_of)
+}
+
+pub(crate) fn float_texture_of(channels: u8) -> impl Strategy<Value = Texture> {
+    size().prop_flat_map(move |size| {
         let count = (size.x * size.y) as usize * usize::from(channels);
         prop::collection::vec(0.0..1.0f32, count)
             .prop_map(move |texels| made(size, channels, Transfer::Linear, Texels::F32(texels)))
