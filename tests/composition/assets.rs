@@ -278,8 +278,8 @@ fn vertex_color_test_equals_its_sample() {
         return;
     };
     // The three marks of the test row and of the sample row below it.
-    for x in [518u32, 640, 768] {
-        let (test, sample) = (p.mean((x, 236), 36), p.mean((x, 496), 36));
+    for x in [457u32, 640, 837] {
+        let (test, sample) = (p.mean((x, 246), 70), p.mean((x, 536), 70));
         assert!(
             (test - sample).abs().max_element() < 0.03,
             "{x}: {test} {sample}"
@@ -313,7 +313,7 @@ fn normal_tangent_test_shades_maps_as_geometry() {
             };
             let r = cov(&a, ma, &b, mb) / (cov(&a, ma, &a, ma) * cov(&b, mb, &b, mb)).sqrt();
             assert!(
-                r > 0.85 && (ma - mb).abs() < 0.03,
+                r > 0.85 && (ma - mb).abs() < 0.06,
                 "pair at ({left}, {y}): r {r}, {ma} {mb}"
             );
         }

@@ -398,11 +398,10 @@ fn negative_scale_shades_as_its_mirror_image() {
 #[test]
 fn very_long_and_very_thin_targets() {
     for (width, height) in [(16384, 1), (1, 16384), (1, 1), (33, 31)] {
-        let glb = textured(
-            &[[-1.0, -1.0, 0.0], [3.0, -1.0, 0.0], [-1.0, 3.0, 0.0]],
-            &[[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]],
-            (8, 8),
-        );
+        let mut glb = Glb::new();
+        let texture = glb.texture(16, 16, &grid_texels(16));
+        let material = glb.unlit_texture(texture);
+        glb.quad(0.0, material);
         let settings = Settings {
             width,
             height,

@@ -163,11 +163,7 @@ fn hidden_surfaces_are_not_shaded() {
         glb.quad(i as f32 * 0.1, material);
     }
     let (film, _, _) = film(&glb.load(), &square(16));
-    assert_eq!(
-        film.counts.pixels_shaded,
-        256 + 16,
-        "once a pixel, twice on the diagonal at most"
-    );
+    assert_eq!(film.counts.pixels_shaded, 256, "once a pixel");
     assert_eq!(film.counts.triangles_in, 20);
     assert_eq!(film.counts.triangles_visible, 2);
 }

@@ -4,7 +4,7 @@ use std::io::Cursor;
 
 use exr::prelude::{
     AnyChannel, AnyChannels, Encoding, FlatSamples, Image, ImageAttributes, IntegerBounds, Layer,
-    LayerAttributes, SmallVec, WritableImage,
+    LayerAttributes, LineOrder, SmallVec, WritableImage,
 };
 
 use super::encode::rows;
@@ -72,7 +72,11 @@ fn write(film: &Film, channels: Vec<AnyChannel<FlatSamples>>) -> Result<Vec<u8>,
     let layer = Layer::new(
         size,
         LayerAttributes::default(),
-        Encoding::FAST_LOSSLESS,
+        // In the order of the lines: left open, it would follow whichever thread was done first.
+        Encoding {
+            line_order: LineOrder::Increasing,
+            ..Encoding::FAST_LOSSLESS
+        },
         AnyChannels::sort(SmallVec::from_vec(channels)),
     );
     let attributes = ImageAttributes::new(IntegerBounds::from_dimensions(size));

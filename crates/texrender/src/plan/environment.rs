@@ -1,6 +1,7 @@
 //! Which parts of the environment are needed.
 
 use super::{Kernel, Lighting, Plan, Reflectance};
+use crate::error::Error;
 use crate::settings::{Background, EnvironmentSource};
 
 /// Roughnesses at which a blurred environment is kept; lookups interpolate between two of them.
@@ -17,6 +18,16 @@ pub struct EnvironmentNeed {
     pub roughness_levels: Vec<f32>,
     /// Whether it is seen behind everything.
     pub background: bool,
+}
+
+/// A file that was named must exist, whether or not anything turns out to show it.
+pub(super) fn check_exists(source: &EnvironmentSource) -> Result<(), Error> {
+    match source {
+        EnvironmentSource::File(path) => std::fs::metadata(path)
+            .map(|_| ())
+            .map_err(|error| Error::read(path, error)),
+        EnvironmentSource::Studio | EnvironmentSource::None => Ok(()),
+    }
 }
 
 /// The need of a plan whose kernels are known; `None` if nothing shows the environment.

@@ -110,6 +110,7 @@ impl Plan {
     /// not an image, or larger than the memory limit.
     pub fn new(scene: &Scene, settings: &Settings) -> Result<Self, Error> {
         settings.validate()?;
+        environment::check_exists(&settings.environment)?;
         let viewpoint = view::viewpoint(scene, settings)?;
         let mut plan = Self {
             settings: settings.clone(),

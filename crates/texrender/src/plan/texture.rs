@@ -93,10 +93,25 @@ impl TextureNeed {
 
 /// Reads the sizes of the listed images from their headers.
 pub(super) fn measure(scene: &Scene, plan: &mut Plan) -> Result<(), Error> {
+    let limit = plan.settings.max_memory;
     plan.textures.par_iter_mut().try_for_each(|need| {
-        let header = decode::header(&scene.images[need.image])?;
+        let image = &scene.images[need.image];
+        let header = decode::header(image)?;
         need.size = header.size;
         need.texel_bytes = header.texel_bytes;
+        if need.bytes() > limit {
+            return Err(Error::Memory {
+                what: format!(
+                    "{}: {} of {}x{} texels",
+                    scene.path.display(),
+                    image.name,
+                    need.size.x,
+                    need.size.y
+                ),
+                needed: need.bytes() >> 20,
+                available: limit >> 20,
+            });
+        }
         Ok(())
     })
 }

@@ -12,7 +12,12 @@ use crate::values;
 
 /// Textured pictures of 3D scenes on a machine without a GPU.
 #[derive(Parser)]
-#[command(version, about, arg_required_else_help = true)]
+#[command(
+    version,
+    about,
+    arg_required_else_help = true,
+    args_override_self = true
+)]
 pub(crate) struct Cli {
     #[command(subcommand)]
     pub command: Command,
