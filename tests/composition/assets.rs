@@ -302,7 +302,7 @@ fn normal_tangent_test_shades_maps_as_geometry() {
                     .clone()
                     .flat_map(|j| reach.clone().map(move |i| (i, j)))
                     .filter(|(i, j)| i * i + j * j < 22 * 22)
-                    .map(|(i, j)| p.at(cx.strict_add_signed(i), y.strict_add_signed(j)).y)
+                    .map(|(i, j)| p.at(cx.wrapping_add_signed(i), y.wrapping_add_signed(j)).y)
                     .collect()
             };
             let (a, b) = (patch(left), patch(right));
