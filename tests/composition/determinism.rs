@@ -26,7 +26,7 @@ fn rich() -> Glb {
             }),
         );
         let node = glb.quad(0.0, material);
-        glb.json["nodes"][node]["rotation"] = json!([0.1, f64::from(z), 0.05, 0.9]);
+        glb.json["nodes"][node]["rotation"] = json!([0.1, z, 0.05, 0.9]);
     }
     glb
 }

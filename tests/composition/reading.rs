@@ -96,7 +96,7 @@ fn line_loop_closes() {
 #[test]
 fn normalised_components_become_fractions() {
     for (component, bytes) in [
-        (U8, vec![255u8, 128, 0, 255].repeat(4)),
+        (U8, [255u8, 128, 0, 255].repeat(4)),
         (
             U16,
             [65535u16, 32896, 0, 65535]

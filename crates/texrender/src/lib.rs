@@ -79,6 +79,7 @@ pub mod render;
 pub mod scene;
 
 mod error;
+mod number;
 mod settings;
 
 pub use envmap;

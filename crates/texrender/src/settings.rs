@@ -52,9 +52,10 @@ impl Default for Settings {
 }
 
 /// Where a picture is seen from.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub enum View {
     /// The scene's first camera; without cameras, [`View::Orbit`] with its defaults.
+    #[default]
     Default,
     /// A camera of the scene, by name or index.
     Camera(String),
@@ -69,12 +70,6 @@ pub enum View {
     },
     /// Around what is visible.
     Orbit(Orbit),
-}
-
-impl Default for View {
-    fn default() -> Self {
-        Self::Default
-    }
 }
 
 /// A view from around the scene.

@@ -4,14 +4,14 @@ use gltf::accessor::{Accessor, DataType, Dimensions, sparse};
 
 use super::File;
 use crate::error::Error;
+use crate::number::nearest_f32;
 
 /// Reads an accessor of `N` components as f32; normalised integers become −1..=1 or 0..=1.
 pub(super) fn read_f32<const N: usize>(
     file: &File,
     accessor: &Accessor,
 ) -> Result<Vec<[f32; N]>, Error> {
-    let decode = float_decoder(accessor.data_type(), accessor.normalized());
-    read(file, accessor, N, 0.0, decode)
+    read(file, accessor, N, 0.0, float_decoder(accessor))
 }
 
 /// Reads an accessor of `N` unsigned integer components.
@@ -43,8 +43,8 @@ fn place(accessor: &Accessor) -> String {
 }
 
 /// One component to f32, glTF 2.0 section 3.6.2.2 and "Animations" for the normalised forms.
-fn float_decoder(kind: DataType, normalized: bool) -> fn(&[u8]) -> f32 {
-    match (kind, normalized) {
+fn float_decoder(accessor: &Accessor) -> fn(&[u8]) -> f32 {
+    match (accessor.data_type(), accessor.normalized()) {
         (DataType::F32, _) => |b| f32::from_le_bytes([b[0], b[1], b[2], b[3]]),
         (DataType::U8, true) => |b| f32::from(b[0]) / 255.0,
         (DataType::U8, false) => |b| f32::from(b[0]),
@@ -56,9 +56,9 @@ fn float_decoder(kind: DataType, normalized: bool) -> fn(&[u8]) -> f32 {
             |b| (f32::from(i16::from_le_bytes([b[0], b[1]])) / 32767.0).max(-1.0)
         }
         (DataType::I16, false) => |b| f32::from(i16::from_le_bytes([b[0], b[1]])),
-        (DataType::U32, true) => {
-            |b| (f64::from(u32::from_le_bytes([b[0], b[1], b[2], b[3]])) / 4_294_967_295.0) as f32
-        }
+        (DataType::U32, true) => |b| {
+            nearest_f32(f64::from(u32::from_le_bytes([b[0], b[1], b[2], b[3]])) / 4_294_967_295.0)
+        },
         (DataType::U32, false) => |b| u32::from_le_bytes([b[0], b[1], b[2], b[3]]) as f32,
     }
 }

@@ -7,6 +7,7 @@ use gltf::animation::{Channel, Interpolation, Property};
 
 use super::{File, accessor};
 use crate::error::Error;
+use crate::number::nearest_f32;
 
 /// What the animation says of the nodes at one moment.
 #[derive(Default)]
@@ -256,6 +257,6 @@ fn morph_weights(
     };
     keys.check(file, place, times.len())?;
     Ok((0..keys.stride)
-        .map(|target| keys.component(span, target, |v| f64::from(v[0])) as f32)
+        .map(|target| nearest_f32(keys.component(span, target, |v| f64::from(v[0]))))
         .collect())
 }

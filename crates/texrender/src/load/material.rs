@@ -8,6 +8,7 @@ use texcoord::TextureTransform;
 
 use super::File;
 use crate::error::Error;
+use crate::number::nearest_f32;
 use crate::scene::{
     AlphaMode, Material, MaterialModel, NormalTexture, OcclusionTexture, TextureUse,
 };
@@ -124,7 +125,7 @@ impl TextureUse {
         let Some(extension) = extension else {
             return self;
         };
-        let number = |value: &Value| value.as_f64().map(|x| x as f32);
+        let number = |value: &Value| value.as_f64().map(nearest_f32);
         let pair = |key: &str| {
             let array = extension.get(key)?.as_array()?;
             Some(Vec2::new(number(array.first()?)?, number(array.get(1)?)?))

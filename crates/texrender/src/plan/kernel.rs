@@ -62,7 +62,7 @@ pub enum Lighting {
     /// Nothing: the base colour is what is seen.
     Unlit,
     /// Reflects it.
-    Lit(LitKernel),
+    Lit(Box<LitKernel>),
 }
 
 /// The part of a kernel that only lit surfaces have.
@@ -175,17 +175,17 @@ impl<'a> KernelBuilder<'a> {
             },
             vertex_colors: self.primitive.colors.is_some(),
             base_color,
-            base_color_map: self.map_if(
-                shows_color,
-                self.material.base_color_map,
+            base_color_map: self.map(
+                self.material.base_color_map.filter(|_| shows_color),
                 color_role,
                 "base colour",
             ),
             lighting: self.lighting(),
             emissive,
-            emissive_map: self.map_if(
-                emissive != Vec3::ZERO,
-                self.material.emissive_map,
+            emissive_map: self.map(
+                self.material
+                    .emissive_map
+                    .filter(|_| emissive != Vec3::ZERO),
                 TextureRole::Colour,
                 "emission",
             ),
@@ -197,11 +197,11 @@ impl<'a> KernelBuilder<'a> {
         let bare =
             self.primitive.topology != Topology::Triangles && self.primitive.normals.is_none();
         match self.reflectance() {
-            Some(reflectance) if !bare => Lighting::Lit(LitKernel {
+            Some(reflectance) if !bare => Lighting::Lit(Box::new(LitKernel {
                 reflectance,
                 normal: self.normal(),
                 occlusion: self.occlusion(),
-            }),
+            })),
             _ => Lighting::Unlit,
         }
     }
@@ -225,14 +225,21 @@ impl<'a> KernelBuilder<'a> {
                 Some(Reflectance::MetallicRoughness {
                     metallic,
                     roughness,
-                    map: self.map_if(varies, map, TextureRole::Data, "metallic and roughness"),
+                    map: self.map(
+                        map.filter(|_| varies),
+                        TextureRole::Data,
+                        "metallic and roughness",
+                    ),
                     ior,
                     specular,
-                    specular_map: self.map_if(layered, specular_map, TextureRole::Data, "specular"),
+                    specular_map: self.map(
+                        specular_map.filter(|_| layered),
+                        TextureRole::Data,
+                        "specular",
+                    ),
                     specular_color,
-                    specular_color_map: self.map_if(
-                        layered,
-                        specular_color_map,
+                    specular_color_map: self.map(
+                        specular_color_map.filter(|_| layered),
                         TextureRole::Colour,
                         "specular colour",
                     ),
@@ -245,12 +252,7 @@ impl<'a> KernelBuilder<'a> {
             } => Some(Reflectance::SpecularGlossiness {
                 specular,
                 glossiness,
-                map: self.map_if(
-                    true,
-                    map,
-                    TextureRole::ColourAndData,
-                    "specular and glossiness",
-                ),
+                map: self.map(map, TextureRole::ColourAndData, "specular and glossiness"),
             }),
         }
     }
@@ -261,7 +263,11 @@ impl<'a> KernelBuilder<'a> {
             return None;
         }
         let bends = normal.scale != 0.0;
-        let map = self.map_if(bends, Some(normal.map), TextureRole::Normal, "normal")?;
+        let map = self.map(
+            Some(normal.map).filter(|_| bends),
+            TextureRole::Normal,
+            "normal",
+        )?;
         let source = if self.primitive.tangents.is_some() {
             TangentSource::File
         } else {
@@ -280,19 +286,17 @@ impl<'a> KernelBuilder<'a> {
         // Occlusion dims the surroundings' light; without surroundings there is nothing to dim.
         let dims = occlusion.strength != 0.0
             && self.plan.settings.environment != crate::settings::EnvironmentSource::None;
-        let map = self.map_if(dims, Some(occlusion.map), TextureRole::Data, "occlusion")?;
+        let map = self.map(
+            Some(occlusion.map).filter(|_| dims),
+            TextureRole::Data,
+            "occlusion",
+        )?;
         Some((map, occlusion.strength))
     }
 
-    /// A map, if the surface needs it and the primitive has coordinates for it.
-    fn map_if(
-        &mut self,
-        needed: bool,
-        source: Option<TextureUse>,
-        role: TextureRole,
-        purpose: &str,
-    ) -> Option<Map> {
-        let source = source.filter(|_| needed)?;
+    /// A map, if the primitive has coordinates for it.
+    fn map(&mut self, source: Option<TextureUse>, role: TextureRole, purpose: &str) -> Option<Map> {
+        let source = source?;
         let texture = self.scene.textures.get(source.texture)?;
         if source.texcoord >= self.primitive.texcoords.len() {
             self.plan.warnings.push(format!(

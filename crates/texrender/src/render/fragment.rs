@@ -6,9 +6,7 @@ use raster::Facing;
 use sampler::unpremultiply;
 use texcoord::{ScreenCoordinate, Weights};
 
-use crate::plan::{
-    Draw, Kernel, Lighting, LitKernel, Map, Plan, TangentSource, TextureRole, Winding,
-};
+use crate::plan::{Draw, Kernel, Lighting, Map, Plan, TangentSource, TextureRole, Winding};
 use crate::prepare::Resources;
 use crate::scene::{Primitive, Scene, Topology};
 use normalmap::{TangentFrame, decode_normal};
@@ -145,17 +143,15 @@ impl<'a> Fragment<'a> {
     /// Unit shading normal in the world, on the side that is seen.
     pub(super) fn normal(&mut self) -> Vec3 {
         let smooth = self.smooth_normal();
-        let bent = match &self.kernel.lighting {
-            Lighting::Lit(LitKernel {
-                normal: Some((map, scale, source)),
-                ..
-            }) => {
-                let frame = self.tangent_frame(smooth, map, *source);
-                let texel = self.sample(Some(map));
-                frame.perturbed(decode_normal(texel.truncate(), *scale))
-            }
-            _ => smooth,
+        let map = match &self.kernel.lighting {
+            Lighting::Lit(lit) => lit.normal.as_ref(),
+            Lighting::Unlit => None,
         };
+        let bent = map.map_or(smooth, |(map, scale, source)| {
+            let frame = self.tangent_frame(smooth, map, *source);
+            let texel = self.sample(Some(map));
+            frame.perturbed(decode_normal(texel.truncate(), *scale))
+        });
         // glTF 2.0, section 3.9.6: seen from behind, the whole tangent frame is reversed.
         match self.facing {
             Facing::Front => bent,

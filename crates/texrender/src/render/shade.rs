@@ -4,6 +4,7 @@ use glam::{Vec2, Vec3, Vec4};
 use shading::{MetallicRoughness, SpecularGlossiness, Surface};
 
 use super::fragment::Fragment;
+use crate::number::nearest_f32;
 use crate::plan::{Coverage, Lighting, LitKernel, Map, Plan, Reflectance};
 use crate::prepare::Resources;
 
@@ -81,7 +82,7 @@ fn values(plan: &Plan, fragment: &mut Fragment, lod: f32) -> Values {
     let position = fragment.position();
     let back = plan.viewpoint.axes.z_axis;
     Values {
-        depth: (plan.viewpoint.eye - position).dot(back) as f32,
+        depth: nearest_f32((plan.viewpoint.eye - position).dot(back)),
         normal: fragment.normal(),
         st: st.map_or(Vec2::ZERO, |at| at.st.as_vec2()),
         mip_level: lod,

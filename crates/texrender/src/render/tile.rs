@@ -189,7 +189,11 @@ impl<'a> TileRenderer<'a> {
             .visibility
             .surfaces(pixel, |t, mask| surfaces.push((t, mask)));
         let covered = surfaces.iter().fold(0, |all, (_, mask)| all | mask);
-        let background = self.background(pixel, covered != full || !over.is_empty());
+        let background = if covered != full || !over.is_empty() {
+            self.background(pixel)
+        } else {
+            Light::default()
+        };
 
         let most = surfaces
             .iter()
@@ -299,10 +303,10 @@ impl<'a> TileRenderer<'a> {
     }
 
     /// What is behind everything in a pixel, as far as the film holds it.
-    fn background(&self, pixel: UVec2, seen: bool) -> Light {
+    fn background(&self, pixel: UVec2) -> Light {
         let environment = self.resources.environment.as_ref();
         match (self.plan.settings.background, environment) {
-            (Background::Environment, Some(environment)) if seen => {
+            (Background::Environment, Some(environment)) => {
                 let size = DVec2::new(
                     f64::from(self.plan.settings.width),
                     f64::from(self.plan.settings.height),
