@@ -23,6 +23,8 @@
 //! - [`TangentFrame`]: T, B and N at a point, as interpolated; turned with the texture by
 //!   [`TangentFrame::turned`] where a texture transform turns the map.
 //! - [`decode_normal`]: from a texel to a direction in the frame.
+//! - [`filtered_variance`], [`curvature_variance`]: how much the normals under a pixel differ, for a
+//!   highlight that must not sparkle.
 //!
 //! # Conventions
 //! As glTF: s runs right, t runs down, +Y of a normal map points up in the picture, so B runs along
@@ -35,13 +37,15 @@
 //!
 //! # Sources
 //! glTF 2.0, sections 3.7.2.1 and 3.9.3; Mikkelsen 2008, "Simulation of Wrinkled Surfaces
-//! Revisited"; mikktspace.h; KHR_texture_transform.
+//! Revisited"; mikktspace.h; KHR_texture_transform; Toksvig 2005; Tokuyoshi & Kaplanyan 2019.
 #![forbid(unsafe_code)]
 
 mod decode;
 mod tangent_frame;
+mod variance;
 mod vertex_tangents;
 
 pub use decode::decode_normal;
 pub use tangent_frame::TangentFrame;
+pub use variance::{curvature_variance, filtered_variance};
 pub use vertex_tangents::{TangentMesh, VertexTangents, vertex_tangents};

@@ -31,6 +31,35 @@ impl Surface {
         self.roughness * self.roughness
     }
 
+    /// The surface whose normals spread by a variance of slopes: `α'² = α² + 2σ²`, at most 1.
+    ///
+    /// What a pixel cannot resolve of a bumpy or curved surface makes its highlight wider and dimmer
+    /// instead of letting it sparkle. `variance` ≥ 0; NaN counts as 0.
+    ///
+    /// # Source
+    /// Kaplanyan et al. 2016, "Filtering Distributions of Normals for Shading Antialiasing": the
+    /// convolution of two Gaussian slope distributions adds their variances, and α² = 2σ².
+    /// # Examples
+    /// ```
+    /// use shading::{MetallicRoughness, Surface};
+    /// let mirror = MetallicRoughness { roughness: 0.0, ..Default::default() };
+    /// let spread = Surface::from_metallic_roughness(&mirror).widened(0.02);
+    /// assert!((spread.alpha_ggx() - 0.2).abs() < 1e-6);
+    /// ```
+    #[must_use]
+    pub fn widened(self, variance: f32) -> Self {
+        if variance > 0.0 {
+            let alpha = self.alpha_ggx();
+            let widened = (alpha * alpha + 2.0 * variance).min(1.0);
+            Self {
+                roughness: widened.sqrt().sqrt(),
+                ..self
+            }
+        } else {
+            self
+        }
+    }
+
     /// Reflectance distribution `f(l, v)`, per steradian, without the cosine of the light.
     ///
     /// `normal`, `view`, `light`: unit, away from the surface. Zero where the light is at or below
