@@ -1,7 +1,5 @@
 //! What a filtered normal hides: the spread of the normals under a pixel, as a variance of slopes.
 
-use core::f32::consts::FRAC_1_PI;
-
 use glam::Vec3;
 
 /// Share by which quantisation to 8 bits can shorten a unit normal: half a code, 1/255 of the range
@@ -45,19 +43,26 @@ pub fn filtered_variance(direction: Vec3, scale: f32) -> f32 {
 
 /// Variance of the slopes of a curved surface under a pixel.
 ///
-/// `(‖∂n/∂x‖² + ‖∂n/∂y‖²)/(2π)`, at most 0.09. The derivatives are those of the unit normal, a pixel;
-/// a non-finite one gives the largest value.
+/// A normal that changes evenly by d across a pixel has a variance of d²/12 over its box; of the two
+/// directions the one of the faster change counts. At most 0.09. The derivatives are those of the
+/// unit normal, a pixel; a non-finite one gives the largest value.
 ///
 /// # Source
-/// Tokuyoshi & Kaplanyan 2019, "Improved Geometric Specular Antialiasing", eq. 3 and section 4.
+/// Variance of a uniform distribution. The idea of widening a lobe by it, and the bound: Tokuyoshi &
+/// Kaplanyan 2019, "Improved Geometric Specular Antialiasing", whose Gaussian pixel is wider and
+/// blurs mirrors more than a box does.
 /// # Examples
 /// ```
 /// use glam::Vec3;
-/// assert_eq!(normalmap::curvature_variance(Vec3::ZERO, Vec3::ZERO), 0.0);
+/// let variance = normalmap::curvature_variance(Vec3::X * 0.12, Vec3::ZERO);
+/// assert!((variance - 0.0012).abs() < 1e-8);
 /// ```
 #[must_use]
 pub fn curvature_variance(dn_dx: Vec3, dn_dy: Vec3) -> f32 {
-    let variance = (dn_dx.length_squared() + dn_dy.length_squared()) * (0.5 * FRAC_1_PI);
-    // `min` takes the bound for NaN.
-    variance.min(MAX_CURVATURE_VARIANCE)
+    let (x, y) = (dn_dx.length_squared(), dn_dy.length_squared());
+    if x.is_finite() && y.is_finite() {
+        (x.max(y) / 12.0).min(MAX_CURVATURE_VARIANCE)
+    } else {
+        MAX_CURVATURE_VARIANCE
+    }
 }

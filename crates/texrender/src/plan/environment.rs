@@ -1,5 +1,6 @@
 //! Which parts of the environment are needed.
 
+use super::kernel::Curvature;
 use super::{Kernel, Lighting, Plan, Reflectance};
 use crate::error::Error;
 use crate::settings::{Background, EnvironmentSource};
@@ -59,12 +60,15 @@ pub(super) fn need(plan: &Plan) -> Option<EnvironmentNeed> {
 }
 
 /// Least and greatest roughness that a kernel can have.
+///
+/// The greatest is widened by what a pixel cannot resolve: curvature adds at most 0.18 to α², a
+/// normal map anything.
 fn roughness_range(kernel: &Kernel) -> Option<(f32, f32)> {
     let Lighting::Lit(lit) = &kernel.lighting else {
         return None;
     };
     let unit = |x: f32| x.clamp(0.0, 1.0);
-    Some(match &lit.reflectance {
+    let (low, high) = match &lit.reflectance {
         Reflectance::MetallicRoughness { roughness, map, .. } => {
             let high = unit(*roughness);
             (if map.is_some() { 0.0 } else { high }, high)
@@ -75,5 +79,11 @@ fn roughness_range(kernel: &Kernel) -> Option<(f32, f32)> {
             let low = unit(1.0 - *glossiness);
             (low, if map.is_some() { 1.0 } else { low })
         }
-    })
+    };
+    let widened = match (&lit.normal, kernel.curvature) {
+        (Some(_), _) => 1.0,
+        (None, Curvature::Smooth) => unit((high * high * high * high + 0.18).sqrt().sqrt()),
+        (None, Curvature::Flat) => high,
+    };
+    Some((low, widened))
 }

@@ -19,6 +19,8 @@ pub struct Kernel {
     pub coverage: Coverage,
     /// Which of its sides are drawn.
     pub sidedness: Sidedness,
+    /// Whether normals are interpolated.
+    pub curvature: Curvature,
     /// Whether vertex colours multiply the base colour.
     pub vertex_colors: bool,
     /// Linear; multiplies the map.
@@ -54,6 +56,15 @@ pub enum Sidedness {
     Single,
     /// Both; the back with its normal turned.
     Double,
+}
+
+/// Whether normals are interpolated over a surface.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Curvature {
+    /// Each triangle has its own.
+    Flat,
+    /// From vertex to vertex.
+    Smooth,
 }
 
 /// What light does to a surface.
@@ -172,6 +183,10 @@ impl<'a> KernelBuilder<'a> {
                 Sidedness::Double
             } else {
                 Sidedness::Single
+            },
+            curvature: match self.primitive.normals {
+                Some(_) => Curvature::Smooth,
+                None => Curvature::Flat,
             },
             vertex_colors: self.primitive.colors.is_some(),
             base_color,

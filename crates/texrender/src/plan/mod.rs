@@ -20,7 +20,7 @@ use crate::settings::Settings;
 pub use describe::scene_summary;
 pub use environment::EnvironmentNeed;
 pub use kernel::{
-    Coverage, Kernel, Lighting, LitKernel, Map, Reflectance, Sidedness, TangentSource,
+    Coverage, Curvature, Kernel, Lighting, LitKernel, Map, Reflectance, Sidedness, TangentSource,
 };
 pub use texture::{PyramidNeed, TextureNeed, TextureRole};
 pub use view::Viewpoint;

@@ -9,10 +9,17 @@ use texcoord::{ScreenCoordinate, Weights};
 use crate::plan::{Draw, Kernel, Lighting, Map, Plan, TangentSource, TextureRole, Winding};
 use crate::prepare::Resources;
 use crate::scene::{Primitive, Scene, Topology};
-use normalmap::{TangentFrame, decode_normal};
+use normalmap::{TangentFrame, curvature_variance, decode_normal, filtered_variance};
 
 /// Most sets of texture coordinates whose interpolation is kept; later ones are computed each time.
 const KEPT_SETS: usize = 2;
+
+/// A normal, and the variance of slopes about it under the pixel.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct ShadingNormal {
+    pub direction: Vec3,
+    pub variance: f32,
+}
 
 /// A point of an element, with its vertex attributes at hand.
 pub(super) struct Fragment<'a> {
@@ -140,39 +147,64 @@ impl<'a> Fragment<'a> {
         }
     }
 
-    /// Unit shading normal in the world, on the side that is seen.
-    pub(super) fn normal(&mut self) -> Vec3 {
+    /// Unit shading normal in the world on the side that is seen, and how much the normals under the
+    /// pixel differ from it.
+    pub(super) fn normal(&mut self) -> ShadingNormal {
         let smooth = self.smooth_normal();
         let map = match &self.kernel.lighting {
             Lighting::Lit(lit) => lit.normal.as_ref(),
             Lighting::Unlit => None,
         };
         let bent = map.map_or(smooth, |(map, scale, source)| {
-            let frame = self.tangent_frame(smooth, map, *source);
-            let texel = self.sample(Some(map));
-            frame.perturbed(decode_normal(texel.truncate(), *scale))
+            let frame = self.tangent_frame(smooth.direction, map, *source);
+            let texel = self.sample(Some(map)).truncate();
+            ShadingNormal {
+                direction: frame.perturbed(decode_normal(texel, *scale)),
+                variance: smooth.variance + filtered_variance(decode_normal(texel, 1.0), *scale),
+            }
         });
         // glTF 2.0, section 3.9.6: seen from behind, the whole tangent frame is reversed.
         match self.facing {
             Facing::Front => bent,
-            Facing::Back => -bent,
+            Facing::Back => ShadingNormal {
+                direction: -bent.direction,
+                ..bent
+            },
         }
     }
 
-    /// Unit normal of the front side, before any normal map.
-    fn smooth_normal(&self) -> Vec3 {
-        let interpolated = match &self.primitive.normals {
-            Some(normals) => {
-                self.draw.normal_matrix * self.weights.interpolate_vec3(self.at(normals))
-            }
-            None => {
-                let [a, b, c] = self
-                    .at(&self.primitive.positions)
-                    .map(|p| self.draw.world.transform_point3(p.as_dvec3()));
-                (b - a).cross(c - a).normalize_or_zero().as_vec3()
-            }
+    /// Normal of the front side, before any normal map.
+    fn smooth_normal(&self) -> ShadingNormal {
+        let Some(normals) = &self.primitive.normals else {
+            let [a, b, c] = self
+                .at(&self.primitive.positions)
+                .map(|p| self.draw.world.transform_point3(p.as_dvec3()));
+            let flat = (b - a).cross(c - a).normalize_or_zero().as_vec3();
+            return ShadingNormal {
+                direction: flat.try_normalize().unwrap_or(Vec3::Z),
+                variance: 0.0,
+            };
         };
-        interpolated.try_normalize().unwrap_or(Vec3::Z)
+        let corners = self.at(normals);
+        let world = |v: Vec3| self.draw.normal_matrix * v;
+        let sum = world(self.weights.interpolate_vec3(corners));
+        let length = sum.length();
+        let Some(direction) = sum.try_normalize() else {
+            return ShadingNormal {
+                direction: Vec3::Z,
+                variance: 0.0,
+            };
+        };
+        // ∂(n/‖n‖) = (∂n − n̂ (n̂·∂n)) / ‖n‖.
+        let slope = |along: DVec3| {
+            let along = along.as_vec3();
+            let change = world(corners[0] * along.x + corners[1] * along.y + corners[2] * along.z);
+            (change - direction * direction.dot(change)) * (self.footprint / length)
+        };
+        ShadingNormal {
+            direction,
+            variance: curvature_variance(slope(self.weights.dx), slope(self.weights.dy)),
+        }
     }
 
     fn tangent_frame(&self, normal: Vec3, map: &Map, source: TangentSource) -> TangentFrame {

@@ -83,7 +83,7 @@ fn values(plan: &Plan, fragment: &mut Fragment, lod: f32) -> Values {
     let back = plan.viewpoint.axes.z_axis;
     Values {
         depth: nearest_f32((plan.viewpoint.eye - position).dot(back)),
-        normal: fragment.normal(),
+        normal: fragment.normal().direction,
         st: st.map_or(Vec2::ZERO, |at| at.st.as_vec2()),
         mip_level: lod,
         surface_id: (fragment.draw.instance + 1) as f32,
@@ -109,8 +109,9 @@ fn reflected(
     lit: &LitKernel,
     base: Vec4,
 ) -> Vec3 {
-    let surface = surface(fragment, &lit.reflectance, base);
-    let normal = fragment.normal();
+    let shading = fragment.normal();
+    let normal = shading.direction;
+    let surface = surface(fragment, &lit.reflectance, base).widened(shading.variance);
     let position = fragment.position();
     let view = plan.viewpoint.toward(position).as_vec3();
 
