@@ -233,3 +233,70 @@ fn rotating_the_environment_and_the_view_together_changes_nothing() {
     );
     assert!((middle.x - 0.5).abs() < 0.03 && left.x < middle.x && middle.x < right.x);
 }
+
+#[test]
+fn environment_is_read_from_exr_as_from_hdr() {
+    let folder = tempfile::tempdir().unwrap();
+    let pixels: Vec<f32> = (0..64 * 32 * 3).map(|i| (i % 7) as f32).collect();
+    let image = image::Rgb32FImage::from_raw(64, 32, pixels).unwrap();
+    let found: Vec<Vec3> = ["sky.exr", "sky.hdr"]
+        .iter()
+        .map(|name| {
+            let path = folder.path().join(name);
+            image.save(&path).unwrap();
+            let mut glb = Glb::new();
+            let material = glb.push("materials", white());
+            glb.quad(0.0, material);
+            let settings = Settings {
+                environment: EnvironmentSource::File(path),
+                ..square(16)
+            };
+            glb.render(&settings).pixel(8, 8).lit
+        })
+        .collect();
+    // HDR stores 8 bits a channel.
+    assert!(
+        ((found[0] - found[1]) / found[0]).abs().max_element() < 0.01,
+        "{found:?}"
+    );
+    assert!(found[0].min_element() > 0.5);
+}
+
+#[test]
+fn missing_normals_are_flat_per_triangle() {
+    // A roof of two slopes without normals, under a light from straight above: each slope has one
+    // brightness, that of its own tilt.
+    let mut glb = Glb::new();
+    let material = glb.push("materials", white());
+    let positions = glb.floats(&[
+        [-1.0, -1.0, 0.0],
+        [0.0, -1.0, 0.5],
+        [1.0, -1.0, 0.0],
+        [-1.0, 1.0, 0.0],
+        [0.0, 1.0, 0.5],
+        [1.0, 1.0, 0.0],
+    ]);
+    let indices = glb.indices(&[0, 1, 4, 0, 4, 3, 1, 2, 5, 1, 5, 4]);
+    glb.mesh(json!({
+        "attributes": { "POSITION": positions }, "indices": indices, "material": material,
+    }));
+    let turn = 0.2f32;
+    glb.node(json!({
+        "rotation": [0.0, turn.sin(), 0.0, turn.cos()],
+        "extensions": { "KHR_lights_punctual": { "light": 0 } },
+    }));
+    glb.json["extensions"] =
+        json!({ "KHR_lights_punctual": { "lights": [{ "type": "directional", "intensity": 3 }] } });
+    let film = glb.render(&dark(32));
+    let side = |x: u32| -> Vec<f32> { (1..31).map(|y| film.pixel(x, y).lit.x).collect() };
+    for columns in [[2, 13], [18, 29]] {
+        let all: Vec<f32> = columns.iter().flat_map(|&x| side(x)).collect();
+        assert!(all.iter().all(|v| (v - all[0]).abs() < 1e-5), "{all:?}");
+    }
+    // The light comes from the right (+X): that slope is brighter, by the cosines of the tilts.
+    let slope = |sign: f32| Vec3::new(0.5 * sign, 0.0, 1.0).normalize();
+    let light = Vec3::new((2.0 * turn).sin(), 0.0, (2.0 * turn).cos());
+    let ratio = film.pixel(24, 16).lit.x / film.pixel(8, 16).lit.x;
+    let cosines = slope(1.0).dot(light) / slope(-1.0).dot(light);
+    assert!((ratio / cosines - 1.0).abs() < 0.05, "{ratio} {cosines}");
+}

@@ -4,7 +4,7 @@ use std::borrow::Cow;
 use std::io::Cursor;
 
 use glam::UVec2;
-use image::{DynamicImage, ImageDecoder, ImageReader, Limits};
+use image::{DynamicImage, ImageDecoder, ImageFormat, ImageReader, Limits};
 
 use crate::error::Error;
 use crate::scene::{ImageData, ImageSource};
@@ -81,7 +81,12 @@ fn failed(source: &ImageSource, error: &image::ImageError) -> Error {
     };
     let remedy = match error {
         image::ImageError::Limits(_) => "raise --max-memory or make the image smaller",
-        image::ImageError::Unsupported(_) => "use PNG, JPEG, WebP or HDR",
+        image::ImageError::Unsupported(_) => "use PNG, JPEG, WebP, HDR or EXR",
+        image::ImageError::Decoding(cause)
+            if cause.format_hint() == ImageFormat::OpenExr.into() =>
+        {
+            "an EXR needs whole R, G and B channels: convert it"
+        }
         _ => "the file is damaged or cut off: export it again",
     };
     Error::Image {
