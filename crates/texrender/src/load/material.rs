@@ -17,21 +17,19 @@ use crate::scene::{
 pub(super) fn material(file: &File, source: &GltfMaterial) -> Result<Material, Error> {
     let strength = source.emissive_strength().unwrap_or(1.0);
     let normal = source.normal_texture().map(|t| NormalTexture {
-        map: TextureUse {
-            texture: t.texture().index(),
-            texcoord: t.tex_coord() as usize,
-            transform: TextureTransform::default(),
-        }
-        .overridden(t.extension_value("KHR_texture_transform")),
+        map: with_raw_transform(
+            t.texture().index(),
+            t.tex_coord(),
+            t.extension_value("KHR_texture_transform"),
+        ),
         scale: t.scale(),
     });
     let occlusion = source.occlusion_texture().map(|t| OcclusionTexture {
-        map: TextureUse {
-            texture: t.texture().index(),
-            texcoord: t.tex_coord() as usize,
-            transform: TextureTransform::default(),
-        }
-        .overridden(t.extension_value("KHR_texture_transform")),
+        map: with_raw_transform(
+            t.texture().index(),
+            t.tex_coord(),
+            t.extension_value("KHR_texture_transform"),
+        ),
         strength: t.strength(),
     });
     let (model, base_color, base_color_map) = model(source);
@@ -119,29 +117,25 @@ fn texture_use(info: &Info) -> TextureUse {
     }
 }
 
-impl TextureUse {
-    /// With the transform of a raw KHR_texture_transform object, where the parser has no type for it.
-    fn overridden(self, extension: Option<&Value>) -> Self {
-        let Some(extension) = extension else {
-            return self;
-        };
-        let number = |value: &Value| value.as_f64().map(nearest_f32);
-        let pair = |key: &str| {
-            let array = extension.get(key)?.as_array()?;
-            Some(Vec2::new(number(array.first()?)?, number(array.get(1)?)?))
-        };
-        let set = extension.get("texCoord").and_then(Value::as_u64);
-        Self {
-            texture: self.texture,
-            texcoord: set
-                .and_then(|n| usize::try_from(n).ok())
-                .unwrap_or(self.texcoord),
-            transform: TextureTransform {
-                offset: pair("offset").unwrap_or(Vec2::ZERO),
-                rotation: extension.get("rotation").and_then(number).unwrap_or(0.0),
-                scale: pair("scale").unwrap_or(Vec2::ONE),
-            },
-        }
+/// A texture use whose transform the parser has no type for: a raw KHR_texture_transform object.
+fn with_raw_transform(texture: usize, texcoord: u32, extension: Option<&Value>) -> TextureUse {
+    let get = |key: &str| extension.and_then(|e| e.get(key));
+    let number = |value: &Value| value.as_f64().map(nearest_f32);
+    let pair = |key: &str| {
+        let array = get(key)?.as_array()?;
+        Some(Vec2::new(number(array.first()?)?, number(array.get(1)?)?))
+    };
+    let overridden = get("texCoord").and_then(Value::as_u64);
+    TextureUse {
+        texture,
+        texcoord: overridden
+            .and_then(|set| usize::try_from(set).ok())
+            .unwrap_or(texcoord as usize),
+        transform: TextureTransform {
+            offset: pair("offset").unwrap_or(Vec2::ZERO),
+            rotation: get("rotation").and_then(number).unwrap_or(0.0),
+            scale: pair("scale").unwrap_or(Vec2::ONE),
+        },
     }
 }
 

@@ -6,7 +6,7 @@ use super::nodes::Tree;
 use super::primitive::{Place, attribute};
 use super::{File, accessor};
 use crate::error::Error;
-use crate::scene::Primitive;
+use crate::scene::{Primitive, cofactors};
 
 /// Weights of the morph targets: the animation's, the node's or the mesh's, in this order.
 pub(super) fn morph_weights(
@@ -119,7 +119,8 @@ pub(super) fn skin(
         made.positions[vertex] = matrix.transform_point3(made.positions[vertex]);
         let linear = Mat3::from_mat4(matrix);
         if let Some(normals) = &mut made.normals {
-            normals[vertex] = (cofactors(linear) * normals[vertex]).normalize_or_zero();
+            let carried = cofactors(linear.as_dmat3()) * normals[vertex].as_dvec3();
+            normals[vertex] = carried.normalize_or_zero().as_vec3();
         }
         if let Some(tangents) = &mut made.tangents {
             let tangent = tangents[vertex];
@@ -129,15 +130,6 @@ pub(super) fn skin(
         }
     }
     Ok(())
-}
-
-/// The matrix that carries normals: cofactors, which is the inverse transpose up to scale.
-fn cofactors(m: Mat3) -> Mat3 {
-    Mat3::from_cols(
-        m.y_axis.cross(m.z_axis),
-        m.z_axis.cross(m.x_axis),
-        m.x_axis.cross(m.y_axis),
-    )
 }
 
 fn joint_matrices(file: &File, skin: &gltf::Skin, tree: &Tree) -> Result<Vec<Mat4>, Error> {

@@ -6,7 +6,7 @@ use glam::{DMat3, DMat4, DVec4};
 
 use super::kernel::{Coverage, KernelBuilder};
 use super::{Draw, Plan, Winding};
-use crate::scene::{Bounds, Scene};
+use crate::scene::{Bounds, Scene, cofactors};
 
 /// Fills `plan.draws`, and with them kernels, textures and tangents.
 pub(super) fn add_draws(scene: &Scene, plan: &mut Plan) {
@@ -53,11 +53,7 @@ pub(super) fn add_draws(scene: &Scene, plan: &mut Plan) {
 
 /// The inverse transpose, up to a positive factor: the cofactors, with the determinant's sign.
 fn normal_matrix(m: DMat3) -> DMat3 {
-    let cofactors = DMat3::from_cols(
-        m.y_axis.cross(m.z_axis),
-        m.z_axis.cross(m.x_axis),
-        m.x_axis.cross(m.y_axis),
-    );
+    let cofactors = cofactors(m);
     let largest = cofactors
         .to_cols_array()
         .iter()

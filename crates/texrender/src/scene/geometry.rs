@@ -1,6 +1,6 @@
 //! Pieces of geometry.
 
-use glam::{DMat4, DVec3, Vec2, Vec3, Vec4};
+use glam::{DMat3, DMat4, DVec3, Vec2, Vec3, Vec4};
 
 /// What the index triples of a primitive mean.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -88,4 +88,14 @@ impl Bounds {
     pub fn transformed(&self, matrix: DMat4) -> Option<Self> {
         Self::of(self.corners().map(|c| matrix.transform_point3(c)))
     }
+}
+
+/// The matrix that carries the normals of what `m` transforms: its cofactors, which are the inverse
+/// transpose times the determinant, and exist where the inverse does not.
+pub(crate) fn cofactors(m: DMat3) -> DMat3 {
+    DMat3::from_cols(
+        m.y_axis.cross(m.z_axis),
+        m.z_axis.cross(m.x_axis),
+        m.x_axis.cross(m.y_axis),
+    )
 }

@@ -15,6 +15,7 @@ use glam::DMat4;
 use shading::PunctualLight;
 
 pub use camera::{Camera, Projection};
+pub(crate) use geometry::cofactors;
 pub use geometry::{Bounds, Primitive, Topology};
 pub use image::{ImageData, ImageSource, Texture};
 pub use material::{
