@@ -1,0 +1,224 @@
+use glam::{DVec3, UVec2, Vec2, Vec3};
+
+use crate::chart::cube::{CubeFace, direction_to_cube};
+use crate::error::Error;
+use crate::solid_angle::cube_face_solid_angles;
+
+/// Values on the six faces of a cube, read without seams.
+///
+/// Each face is stored with a frame of one texel, filled from its neighbours; a frame's corner, where three faces meet
+/// and no fourth texel exists, is the mean of the three. So a bilinear lookup is continuous across edges and corners.
+#[derive(Debug, Clone)]
+pub struct CubeMap {
+    size: u32,
+    /// (size + 2)² texels a face, in the order of [`CubeFace::ALL`].
+    faces: [Vec<Vec3>; 6],
+}
+
+impl CubeMap {
+    /// A cube map from its faces in the order of [`CubeFace::ALL`], each `size`² texels row by row.
+    ///
+    /// # Errors
+    /// [`Error::EmptyCube`] for size 0, [`Error::FaceLength`] where a face does not hold size² texels.
+    pub fn from_faces(size: u32, faces: [Vec<Vec3>; 6]) -> Result<Self, Error> {
+        if size == 0 {
+            return Err(Error::EmptyCube);
+        }
+        let expected = size as usize * size as usize;
+        for (face, texels) in CubeFace::ALL.into_iter().zip(&faces) {
+            if texels.len() != expected {
+                return Err(Error::FaceLength {
+                    face,
+                    size,
+                    expected,
+                    actual: texels.len(),
+                });
+            }
+        }
+        let framed = CubeFace::ALL.map(|face| framed(size, face, &faces));
+        Ok(Self {
+            size,
+            faces: framed,
+        })
+    }
+
+    /// A cube map whose every texel is made by `texel(face, ij)`. `size` of at least 1; 0 counts as 1.
+    pub(crate) fn from_fn(size: u32, texel: impl Fn(CubeFace, UVec2) -> Vec3) -> Self {
+        let size = size.max(1);
+        let faces = CubeFace::ALL.map(|face| {
+            (0..size)
+                .flat_map(|j| (0..size).map(move |i| UVec2::new(i, j)))
+                .map(|ij| texel(face, ij))
+                .collect()
+        });
+        Self {
+            size,
+            faces: CubeFace::ALL.map(|face| framed(size, face, &faces)),
+        }
+    }
+
+    /// Texels along a side of a face.
+    pub fn size(&self) -> u32 {
+        self.size
+    }
+
+    /// Bytes that the texels take, their frames included.
+    pub fn byte_len(&self) -> usize {
+        self.faces
+            .iter()
+            .map(|face| size_of_val(face.as_slice()))
+            .sum()
+    }
+
+    /// Texel `ij` of a face. Beyond the face it is the last of its row or column.
+    #[inline]
+    pub fn texel(&self, face: CubeFace, ij: UVec2) -> Vec3 {
+        let inside = ij.min(UVec2::splat(self.size - 1)) + 1;
+        self.faces[face as usize][inside.y as usize * self.stride() + inside.x as usize]
+    }
+
+    /// The texels of a face, row by row.
+    pub fn face(&self, face: CubeFace) -> Vec<Vec3> {
+        let side = self.size as usize;
+        let rows = self.faces[face as usize].chunks_exact(self.stride());
+        rows.skip(1)
+            .take(side)
+            .flat_map(|row| row[1..=side].iter().copied())
+            .collect()
+    }
+
+    /// The value in `direction`, bilinear and seamless.
+    ///
+    /// `direction`: any length; zero or non-finite counts as +Z. The result lies within the texels read.
+    ///
+    /// # Source
+    /// Direct3D 11.3 functional specification, 7.18.12 (edges and corners).
+    #[inline]
+    pub fn radiance(&self, direction: Vec3) -> Vec3 {
+        let (face, st) = direction_to_cube(direction);
+        self.bilinear(face, st)
+    }
+
+    /// The value at `st` of a face, which must be as [`direction_to_cube`] gives it.
+    #[inline]
+    #[allow(
+        clippy::cast_possible_truncation,
+        reason = "0.5 ≤ x ≤ size + 0.5, and truncation is the floor"
+    )]
+    pub(crate) fn bilinear(&self, face: CubeFace, st: Vec2) -> Vec3 {
+        // In the framed face texel 0 is the frame, so centres stand at i + ½ + 1.
+        let xy = st * self.size as f32 + 0.5;
+        let ij = [xy.x as u32, xy.y as u32].map(|k| k.min(self.size) as usize);
+        let fraction = xy - Vec2::new(ij[0] as f32, ij[1] as f32);
+        let first = ij[1] * self.stride() + ij[0];
+        let texels = &self.faces[face as usize][first..first + self.stride() + 2];
+        let row = |k: usize| texels[k] + (texels[k + 1] - texels[k]) * fraction.x;
+        let top = row(0);
+        top + (row(self.stride()) - top) * fraction.y
+    }
+
+    /// ∫ L dω over the sphere.
+    pub(crate) fn integral(&self) -> DVec3 {
+        let solid_angles = cube_face_solid_angles(self.size);
+        let face_sum = |face| {
+            let texels = self.face(face).into_iter();
+            texels
+                .zip(&solid_angles)
+                .map(|(texel, &omega)| texel.as_dvec3() * omega)
+                .sum::<DVec3>()
+        };
+        CubeFace::ALL.into_iter().map(face_sum).sum()
+    }
+
+    /// The same map with every channel multiplied.
+    pub(crate) fn scaled(mut self, factor: Vec3) -> Self {
+        self.faces
+            .iter_mut()
+            .flatten()
+            .for_each(|texel| *texel *= factor);
+        self
+    }
+
+    fn stride(&self) -> usize {
+        self.size as usize + 2
+    }
+}
+
+/// A face with its frame.
+fn framed(size: u32, face: CubeFace, faces: &[Vec<Vec3>; 6]) -> Vec<Vec3> {
+    let side = i64::from(size);
+    let inside = |k: i64| (0..side).contains(&k);
+    let at = |i: i64, j: i64| {
+        let (face, i, j) = if inside(i) && inside(j) {
+            (face, i, j)
+        } else {
+            beyond_edge(size, face, i, j)
+        };
+        faces[face as usize][usize::try_from(j * side + i).expect("indices inside the face")]
+    };
+    let cell = |i: i64, j: i64| {
+        if inside(i) || inside(j) {
+            return at(i, j);
+        }
+        // The three texels that meet at the corner.
+        let (x, y) = (i.clamp(0, side - 1), j.clamp(0, side - 1));
+        (at(x, y) + at(i, y) + at(x, j)) / 3.0
+    };
+    (-1..=side)
+        .flat_map(|j| (-1..=side).map(move |i| (i, j)))
+        .map(|(i, j)| cell(i, j))
+        .collect()
+}
+
+/// The texel of the neighbouring face that touches texel (i, j), which is one step outside across an edge.
+fn beyond_edge(size: u32, face: CubeFace, i: i64, j: i64) -> (CubeFace, i64, i64) {
+    // A hair outside the edge, so that the index along the edge is not scaled away.
+    let coordinate = |k: i64| match k {
+        -1 => -1e-3 / size as f32,
+        k if k == i64::from(size) => 1.0 + 1e-3 / size as f32,
+        k => (k as f32 + 0.5) / size as f32,
+    };
+    let (neighbour, st) = direction_to_cube(face.point(Vec2::new(coordinate(i), coordinate(j))));
+    (neighbour, index(st.x, size), index(st.y, size))
+}
+
+#[allow(
+    clippy::cast_possible_truncation,
+    reason = "0 ≤ s ≤ 1, and truncation is the floor"
+)]
+fn index(s: f32, size: u32) -> i64 {
+    ((s * size as f32) as i64).min(i64::from(size) - 1)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::chart::cube::cube_to_direction;
+
+    #[test]
+    fn the_frame_holds_the_touching_texels() {
+        for size in [1u32, 2, 3, 8, 128, 1000] {
+            for face in CubeFace::ALL {
+                for k in 0..i64::from(size) {
+                    for (i, j) in [(-1, k), (i64::from(size), k), (k, -1), (k, i64::from(size))] {
+                        let (neighbour, ni, nj) = beyond_edge(size, face, i, j);
+                        assert_ne!(neighbour, face);
+                        let st =
+                            |i: i64, j: i64| (Vec2::new(i as f32, j as f32) + 0.5) / size as f32;
+                        let near = (
+                            i.clamp(0, i64::from(size) - 1),
+                            j.clamp(0, i64::from(size) - 1),
+                        );
+                        let here = cube_to_direction(face, st(near.0, near.1));
+                        let there = cube_to_direction(neighbour, st(ni, nj));
+                        // Half a texel up each face, folded by a right angle: √½ texels apart.
+                        assert!(
+                            here.distance(there) <= 1.45 / size as f32,
+                            "{size} {face:?} {i} {j}"
+                        );
+                    }
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,15 @@
+//! The laws of environment maps, checked through the public interface.
+#![allow(
+    clippy::cast_possible_truncation,
+    reason = "oracles cast between widths on purpose"
+)]
+
+mod charts;
+mod convert;
+mod cube;
+mod irradiance;
+mod latlong;
+mod oracle;
+mod prefilter;
+mod strategies;
+mod studio;

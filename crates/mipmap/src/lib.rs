@@ -1,0 +1,71 @@
+//! What colour is under this footprint? Mip pyramids and the filters that read them.
+//!
+//! ```text
+//!   pixel ──► footprint: st, ∂st/∂x, ∂st/∂y          ┌ level 0 ┐
+//!                  │ axes (singular values)           │ level 1 │   Pyramid: box-filtered in linear light
+//!                  ▼                                  │   ...   │
+//!            η probes along the major axis, at λ ───► └ level n ┘ ──► colour
+//! ```
+//!
+//! ```
+//! use glam::{DVec2, UVec2, Vec2};
+//! use mipmap::{Content, Footprint, Pyramid, SamplerState, sample};
+//! use sampler::{Texels, Texture, Transfer};
+//!
+//! let texels = Texels::U8(vec![0, 255, 255, 0]);
+//! let checker = Texture::new(UVec2::splat(2), 1, Transfer::Srgb, texels)?;
+//! let pyramid = Pyramid::build(checker, Content::Colour);
+//! let footprint = Footprint { st: DVec2::splat(0.3), dst_dx: Vec2::X, dst_dy: Vec2::Y };
+//! let colour = sample(&pyramid, &SamplerState::default(), &footprint);
+//! // Half the light, as the 8-bit code 188 holds it.
+//! assert!((colour.x - 0.5).abs() < 0.004);
+//! # Ok::<(), sampler::Error>(())
+//! ```
+//!
+//! # Levels: [`Pyramid`]
+//! Each level halves the one before; an odd side is split among three taps, so that every level keeps the mean.
+//! [`Content`] says what texels mean: colour is weighted by alpha, normals keep their shortened length.
+//!
+//! # Level of detail: [`footprint_axes`], [`lod`]
+//! The footprint of a round pixel is an ellipse. Its axes are the singular values of the derivatives in texels;
+//! λ = log₂(major axis). [`LodRule::MaxLength`] is the cheaper rule of most hardware.
+//!
+//! # Filters: [`SamplerState`], [`sample`]
+//! glTF's six minification filters and two magnification filters, trilinear, and a line of probes along the major
+//! axis for footprints up to 16 times (by default) as long as wide. Isotropic modes use the exact major axis. The
+//! target pixel kernel of the probe line is a box along the major axis; across it, the tent of the trilinear lookup.
+//!
+//! # Conventions
+//! Level 0 is the finest. λ ≤ 0 is magnification. Axes are full lengths for a pixel of diameter 1.
+//!
+//! # Accuracy
+//!
+//! | what | bound | test |
+//! | --- | --- | --- |
+//! | axes | 1e-6 relative up to aspect 10⁶ | `tests/properties/footprint.rs` |
+//! | [`lod`] | [`LOD_MAX_ABS_ERROR`] | `tests/properties/lod.rs` |
+//! | mean of a level, before storage | 1e-6 relative | `tests/properties/pyramid.rs` |
+//! | stored components | nearest code | `tests/properties/pyramid.rs` |
+//! | [`sample`] against its f64 kernel | 1e-5 of the texels' range | `tests/properties/anisotropic.rs` |
+//! | continuity over derivatives | ≤ 1/255 per 1e-3 step | `tests/properties/filtering.rs` |
+//!
+//! # Limits
+//! Box-filtered levels only. No LOD bias, no elliptical filter and no summed-area table yet. Alpha-tested coverage is
+//! not kept per level.
+//!
+//! # Sources
+//! Williams 1983, "Pyramidal Parametrics"; Heckbert 1989, "Fundamentals of Texture Mapping and Image Warping";
+//! McCormack et al. 1999, "Feline"; Vulkan 1.3, "Image Operations".
+#![forbid(unsafe_code)]
+
+mod downsample;
+mod footprint;
+mod lod;
+mod probes;
+mod pyramid;
+mod sample;
+
+pub use footprint::{Axes, Footprint, footprint_axes};
+pub use lod::{LOD_MAX_ABS_ERROR, LodRule, lod};
+pub use pyramid::{Content, Pyramid};
+pub use sample::{MAX_ANISOTROPY, MipFilter, SamplerState, sample, sample_with_lod};

@@ -1,0 +1,229 @@
+//! What every filter owes: totality, constants, envelope, continuity. Hard cases B1, B3, B4, B5.
+
+use glam::{DVec2, UVec2, Vec2, Vec4};
+use mipmap::{Content, Footprint, MipFilter, Pyramid, SamplerState, sample, sample_with_lod};
+use proptest::prelude::*;
+use sampler::{AddressMode, Filter, Texels, Transfer};
+
+use crate::oracle;
+use crate::strategies::{
+    byte_texture, checker, float_texture, footprint, made, noise, state, tame_footprint, turned,
+};
+
+/// B3: full contrast, 1e-3 step, one 8-bit code.
+const MAX_STEP: f32 = 1.0 / 255.0;
+
+proptest! {
+    #[test]
+    fn sampling_is_total(
+        texture in prop_oneof![float_texture(), byte_texture()], state in state(), footprint in footprint(),
+    ) {
+        let pyramid = Pyramid::build(texture, Content::Colour);
+        let (colour, lod) = sample_with_lod(&pyramid, &state, &footprint);
+        prop_assert!(colour.is_finite(), "{colour}");
+        prop_assert!(colour.cmpge(Vec4::ZERO).all() && colour.cmple(Vec4::ONE).all(), "{colour}");
+        prop_assert!(lod >= 0.0 && lod <= (pyramid.levels() - 1) as f32);
+    }
+
+    #[test]
+    fn constants_survive_every_filter(
+        size in crate::strategies::size(), value in prop_oneof![0.0..1e3f32, Just(f32::MAX)],
+        state in state(), footprint in prop_oneof![footprint(), tame_footprint()],
+    ) {
+        prop_assume!(!state.address.contains(&AddressMode::ClampToBorder));
+        let texels = Texels::F32(vec![value; (size.x * size.y * 3) as usize]);
+        let pyramid = Pyramid::build(made(size, 3, Transfer::Linear, texels), Content::Colour);
+        let colour = sample(&pyramid, &state, &footprint);
+        prop_assert_eq!(colour, Vec4::new(value, value, value, 1.0));
+    }
+
+    /// The probe line and the levels shift with the texture: a whole repeat changes nothing.
+    #[test]
+    fn repeating_textures_repeat(footprint in tame_footprint(), shift in -3i32..4) {
+        let pyramid = checker(8);
+        let state = SamplerState::default();
+        let here = sample(&pyramid, &state, &footprint);
+        let there = sample(&pyramid, &state, &Footprint { st: footprint.st + f64::from(shift), ..footprint });
+        prop_assert!((here - there).abs().max_element() < 1e-5);
+    }
+}
+
+fn round(st: DVec2, texels: f64, side: f64) -> Footprint {
+    let step = (texels / side) as f32;
+    Footprint {
+        st,
+        dst_dx: Vec2::X * step,
+        dst_dy: Vec2::Y * step,
+    }
+}
+
+fn elliptic(st: DVec2, turn: f64, major: f64, minor: f64, side: f64) -> Footprint {
+    let [dx, dy] = turned(turn, 0.3, major / side, minor / side);
+    Footprint {
+        st,
+        dst_dx: dx.as_vec2(),
+        dst_dy: dy.as_vec2(),
+    }
+}
+
+/// Walks `count` steps and checks that no step moves the colour by more than one code.
+fn assert_continuous(what: &str, count: u32, at: impl Fn(f64) -> Footprint) {
+    let pyramid = noise(64);
+    let state = SamplerState::default();
+    let mut last = sample(&pyramid, &state, &at(0.0)).x;
+    for k in 1..=count {
+        let next = sample(&pyramid, &state, &at(f64::from(k))).x;
+        assert!(
+            (next - last).abs() <= MAX_STEP,
+            "{what}: step {k} jumps {}",
+            next - last
+        );
+        last = next;
+    }
+}
+
+#[test]
+fn b3_continuous_across_every_level_and_the_switch_to_magnification() {
+    // λ from −2 to 8 over a pyramid of 7 levels.
+    let st = DVec2::new(0.317, 0.559);
+    assert_continuous("λ", 10_000, |k| round(st, (k * 1e-3 - 2.0).exp2(), 64.0));
+}
+
+#[test]
+fn b3_continuous_as_the_aspect_crosses_the_clamp() {
+    let st = DVec2::new(0.71, 0.13);
+    for minor in [0.5, 1.0, 2.0] {
+        assert_continuous("aspect", 30_000, |k| {
+            elliptic(st, 0.6, minor * (1.0 + k * 1e-3), minor, 64.0)
+        });
+    }
+}
+
+#[test]
+fn b3_continuous_as_the_footprint_turns() {
+    // A step of 1e-3 rad moves the end of a 6-texel footprint by 3e-3 texel.
+    let st = DVec2::new(0.4, 0.9);
+    assert_continuous("rotation", 6_300, |k| {
+        elliptic(st, k * 1e-3, 6.0, 1.5, 64.0)
+    });
+}
+
+#[test]
+fn b1_a_long_line_is_not_read_at_level_zero_alone() {
+    // The line covers the checker many times: its mean, not one of its texels.
+    let pyramid = checker(64);
+    for (dx, dy) in [
+        (Vec2::X, Vec2::ZERO),
+        (Vec2::ZERO, Vec2::ONE),
+        (Vec2::X, Vec2::X),
+    ] {
+        let footprint = Footprint {
+            st: DVec2::new(0.51, 0.23),
+            dst_dx: dx,
+            dst_dy: dy,
+        };
+        let colour = sample(&pyramid, &SamplerState::default(), &footprint).x;
+        assert!((colour - 0.5).abs() < 1e-3, "{dx} {dy}: {colour}");
+    }
+}
+
+#[test]
+fn b1_a_zero_footprint_is_the_magnified_lookup() {
+    let pyramid = checker(4);
+    let footprint = Footprint {
+        st: DVec2::new(0.3, 0.6),
+        ..Footprint::default()
+    };
+    let (colour, lod) = sample_with_lod(&pyramid, &SamplerState::default(), &footprint);
+    let expected = sampler::bilinear(pyramid.level(0), [AddressMode::Repeat; 2], footprint.st);
+    assert_eq!((colour, lod), (expected, 0.0));
+}
+
+#[test]
+fn b4_a_footprint_over_the_whole_texture_is_one_lookup_of_its_mean() {
+    let pyramid = noise(32);
+    let mean = oracle::mean(pyramid.level(0)).x as f32;
+    for derivative in [10.0, 1e3, 1e20, f32::INFINITY, f32::NAN] {
+        let footprint = Footprint {
+            st: DVec2::new(0.2, 0.7),
+            dst_dx: Vec2::X * derivative,
+            dst_dy: Vec2::Y * derivative,
+        };
+        let (colour, lod) = sample_with_lod(&pyramid, &SamplerState::default(), &footprint);
+        assert!((colour.x - mean).abs() < 1e-6);
+        assert_eq!(lod, 5.0);
+        // One fetch: the last level's texel to the bit, which a sum over probes would round.
+        assert_eq!(colour, pyramid.level(5).fetch(UVec2::ZERO));
+    }
+}
+
+#[test]
+fn b5_across_the_wrap_the_mean_is_that_of_both_sides() {
+    // Left half black, right half white: a footprint centred on the wrap or on the middle sees both alike.
+    let texels = (0..256u32)
+        .map(|k| if k % 16 < 8 { 0.0 } else { 1.0 })
+        .collect();
+    let pyramid = Pyramid::build(
+        made(UVec2::splat(16), 1, Transfer::Linear, Texels::F32(texels)),
+        Content::Colour,
+    );
+    for s in [0.0, 0.5, 1.0, 7.0] {
+        let colour = sample(
+            &pyramid,
+            &SamplerState::default(),
+            &elliptic(DVec2::new(s, 0.3), 0.0, 6.0, 1.0, 16.0),
+        );
+        assert!((colour.x - 0.5).abs() < 1e-6, "{s}: {colour}");
+    }
+    // Clamped, the same footprint at the left edge sees black alone: nothing bleeds from the right.
+    let clamped = SamplerState {
+        address: [AddressMode::ClampToEdge; 2],
+        ..SamplerState::default()
+    };
+    let at_edge = elliptic(DVec2::new(0.0, 0.3), 0.0, 6.0, 1.0, 16.0);
+    assert_eq!(sample(&pyramid, &clamped, &at_edge).x, 0.0);
+    let mirrored = SamplerState {
+        address: [AddressMode::MirrorRepeat; 2],
+        ..SamplerState::default()
+    };
+    assert_eq!(sample(&pyramid, &mirrored, &at_edge).x, 0.0);
+}
+
+#[test]
+fn the_six_minification_filters_read_what_they_name() {
+    // Level k holds the constant k.
+    let pyramid = checker(8);
+    let st = DVec2::new(0.3, 0.45);
+    let at = |minify, mip, texels| {
+        let state = SamplerState {
+            minify,
+            mip,
+            max_anisotropy: 1.0,
+            ..SamplerState::default()
+        };
+        sample_with_lod(&pyramid, &state, &round(st, texels, 8.0))
+    };
+    let repeat = [AddressMode::Repeat; 2];
+    for filter in [Filter::Nearest, Filter::Bilinear] {
+        let level = |k: u32| sampler::sample(pyramid.level(k), repeat, filter, st);
+        assert_eq!(at(filter, MipFilter::None, 4.0), (level(0), 0.0));
+        assert_eq!(at(filter, MipFilter::Nearest, 2.7), (level(1), 1.0));
+        assert_eq!(at(filter, MipFilter::Nearest, 3.0), (level(2), 2.0));
+        assert_eq!(at(filter, MipFilter::Linear, 2.0), (level(1), 1.0));
+        let (colour, lod) = at(filter, MipFilter::Linear, 1.5);
+        let expected = level(0).lerp(level(1), 1.5f32.log2());
+        assert!((colour - expected).abs().max_element() < 1e-6);
+        assert!((lod - 1.5f32.log2()).abs() < 1e-6);
+    }
+}
+
+#[test]
+fn magnification_uses_its_own_filter() {
+    let pyramid = checker(8);
+    let state = SamplerState {
+        magnify: Filter::Nearest,
+        ..SamplerState::default()
+    };
+    let colour = sample(&pyramid, &state, &round(DVec2::new(0.3, 0.45), 0.5, 8.0)).x;
+    assert!(colour == 0.0 || colour == 1.0);
+}

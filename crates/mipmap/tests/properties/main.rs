@@ -1,0 +1,13 @@
+//! The laws of pyramids and of the filters that read them, checked through the public interface.
+#![allow(
+    clippy::cast_possible_truncation,
+    reason = "oracles cast between widths on purpose"
+)]
+
+mod anisotropic;
+mod filtering;
+mod footprint;
+mod lod;
+mod oracle;
+mod pyramid;
+mod strategies;

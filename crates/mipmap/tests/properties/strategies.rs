@@ -1,0 +1,182 @@
+//! Inputs that seek trouble.
+
+use glam::{DVec2, UVec2, Vec2};
+use mipmap::{Content, Footprint, MipFilter, Pyramid, SamplerState};
+use proptest::prelude::*;
+use sampler::{AddressMode, Filter, Texels, Texture, Transfer};
+
+/// Two derivative vectors by their ellipse: aspect, rotations on both sides, overall scale.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Jacobian {
+    pub(crate) dst_dx: Vec2,
+    pub(crate) dst_dy: Vec2,
+}
+
+pub(crate) fn jacobian() -> impl Strategy<Value = Jacobian> {
+    let angle = || prop_oneof![3 => 0.0..7.0f64, 1 => (0i32..8).prop_map(|k| f64::from(k) * std::f64::consts::FRAC_PI_4)];
+    let aspect = prop_oneof![
+        Just(1.0),
+        Just(1.0 + 1e-7),
+        Just(8.0),
+        Just(16.0),
+        Just(1e3),
+        Just(1e6),
+        1.0..100.0f64,
+    ];
+    let exponent = prop_oneof![3 => -5.0..0.0f64, 1 => -20.0..20.0f64];
+    (angle(), angle(), aspect, exponent).prop_map(|(turn, spin, aspect, exponent)| {
+        let major = 10f64.powf(exponent);
+        let columns = turned(turn, spin, major, major / aspect);
+        Jacobian {
+            dst_dx: columns[0].as_vec2(),
+            dst_dy: columns[1].as_vec2(),
+        }
+    })
+}
+
+/// R(turn) · diag(major, minor) · R(spin), column by column.
+pub(crate) fn turned(turn: f64, spin: f64, major: f64, minor: f64) -> [DVec2; 2] {
+    let u = DVec2::new(turn.cos(), turn.sin()) * major;
+    let v = DVec2::new(-turn.sin(), turn.cos()) * minor;
+    [
+        u * spin.cos() + v * spin.sin(),
+        v * spin.cos() - u * spin.sin(),
+    ]
+}
+
+/// Derivatives of any bit pattern, and the degenerate ones.
+pub(crate) fn odd_derivative() -> impl Strategy<Value = Vec2> {
+    let component = || {
+        prop_oneof![
+            any::<f32>(),
+            -1.0..1.0f32,
+            prop::sample::select(vec![
+                0.0,
+                f32::NAN,
+                f32::INFINITY,
+                f32::MAX,
+                1e-45,
+                -1e20,
+                1e-20
+            ]),
+        ]
+    };
+    (component(), component()).prop_map(|(s, t)| Vec2::new(s, t))
+}
+
+pub(crate) fn footprint() -> impl Strategy<Value = Footprint> {
+    let coordinate = || prop_oneof![4 => -2.0..3.0f64, 1 => -1e6..1e6f64, 1 => any::<f64>()];
+    (
+        (coordinate(), coordinate()),
+        odd_derivative(),
+        odd_derivative(),
+    )
+        .prop_map(|((s, t), dst_dx, dst_dy)| Footprint {
+            st: DVec2::new(s, t),
+            dst_dx,
+            dst_dy,
+        })
+}
+
+/// Footprints that span from magnified to the whole texture.
+pub(crate) fn tame_footprint() -> impl Strategy<Value = Footprint> {
+    (
+        -2.0..3.0f64,
+        -2.0..3.0f64,
+        0.0..7.0f64,
+        0.0..7.0f64,
+        -9.0..3.0f64,
+        0.0..7.0f64,
+    )
+        .prop_map(|(s, t, turn, spin, log_major, log_aspect)| {
+            let major = log_major.exp2();
+            let [dx, dy] = turned(turn, spin, major, major / log_aspect.exp2());
+            Footprint {
+                st: DVec2::new(s, t),
+                dst_dx: dx.as_vec2(),
+                dst_dy: dy.as_vec2(),
+            }
+        })
+}
+
+pub(crate) fn state() -> impl Strategy<Value = SamplerState> {
+    let mode = || {
+        prop::sample::select(vec![
+            AddressMode::Repeat,
+            AddressMode::MirrorRepeat,
+            AddressMode::ClampToEdge,
+            AddressMode::ClampToBorder,
+        ])
+    };
+    let filter = || prop::sample::select(vec![Filter::Nearest, Filter::Bilinear]);
+    let mip = prop::sample::select(vec![MipFilter::None, MipFilter::Nearest, MipFilter::Linear]);
+    let anisotropy = prop_oneof![
+        1.0..20.0f32,
+        prop::sample::select(vec![1.0, 2.0, 16.0, 64.0, 0.0, f32::NAN, f32::INFINITY]),
+    ];
+    (mode(), mode(), filter(), filter(), mip, anisotropy).prop_map(
+        |(s, t, magnify, minify, mip, max_anisotropy)| SamplerState {
+            address: [s, t],
+            magnify,
+            minify,
+            mip,
+            max_anisotropy,
+        },
+    )
+}
+
+pub(crate) fn size() -> impl Strategy<Value = UVec2> {
+    prop_oneof![
+        (1u32..40, 1u32..40).prop_map(|(w, h)| UVec2::new(w, h)),
+        (1u32..200).prop_map(|n| UVec2::new(n, 1)),
+        (1u32..200).prop_map(|n| UVec2::new(1, n)),
+        (0u32..6, 0u32..6).prop_map(|(w, h)| UVec2::new(1 << w, 1 << h)),
+    ]
+}
+
+pub(crate) fn float_texture() -> impl Strategy<Value = Texture> {
+    (size(), 1u8..=4).prop_flat_map(|(size, channels)| {
+        let count = (size.x * size.y) as usize * usize::from(channels);
+        prop::collection::vec(0.0..1.0f32, count)
+            .prop_map(move |texels| made(size, channels, Transfer::Linear, Texels::F32(texels)))
+    })
+}
+
+pub(crate) fn byte_texture() -> impl Strategy<Value = Texture> {
+    let transfer = prop::sample::select(vec![Transfer::Linear, Transfer::Srgb]);
+    (size(), 1u8..=4, transfer).prop_flat_map(|(size, channels, transfer)| {
+        let count = (size.x * size.y) as usize * usize::from(channels);
+        prop::collection::vec(any::<u8>(), count)
+            .prop_map(move |texels| made(size, channels, transfer, Texels::U8(texels)))
+    })
+}
+
+pub(crate) fn made(size: UVec2, channels: u8, transfer: Transfer, texels: Texels) -> Texture {
+    Texture::new(size, channels, transfer, texels).expect("a valid description")
+}
+
+/// A black and white checker with cells of one texel, f32.
+pub(crate) fn checker(side: u32) -> Pyramid {
+    let texels = (0..side * side)
+        .map(|k| ((k % side + k / side) % 2) as f32)
+        .collect();
+    Pyramid::build(
+        made(UVec2::splat(side), 1, Transfer::Linear, Texels::F32(texels)),
+        Content::Colour,
+    )
+}
+
+/// Full-contrast noise without a pattern, f32, the same every time.
+pub(crate) fn noise(side: u32) -> Pyramid {
+    let mut seed = 0x2545_f491_u32;
+    let texels = (0..side * side)
+        .map(|_| {
+            seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            (seed >> 31) as f32
+        })
+        .collect();
+    Pyramid::build(
+        made(UVec2::splat(side), 1, Transfer::Linear, Texels::F32(texels)),
+        Content::Colour,
+    )
+}

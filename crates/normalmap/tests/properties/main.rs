@@ -1,0 +1,4 @@
+//! The laws of `normalmap`, through its public API.
+
+mod frame;
+mod mesh;

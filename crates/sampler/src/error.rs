@@ -1,0 +1,42 @@
+use glam::UVec2;
+
+/// Why a texture could not be made.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum Error {
+    /// A side of the texture has no texels.
+    #[error("texture of {}×{} texels is empty; both sides must be at least 1", .size.x, .size.y)]
+    EmptySize {
+        /// The size asked for, in texels.
+        size: UVec2,
+    },
+    /// The number of channels is not 1, 2, 3 or 4.
+    #[error("texture with {channels} channels; give 1, 2, 3 or 4")]
+    Channels {
+        /// The number asked for.
+        channels: u8,
+    },
+    /// The texture's components cannot be counted in this machine's address space.
+    #[error("texture of {}×{} texels with {channels} channels is too large to address", .size.x, .size.y)]
+    TooLarge {
+        /// The size asked for, in texels.
+        size: UVec2,
+        /// The number of channels asked for.
+        channels: u8,
+    },
+    /// The buffer does not hold width · height · channels components.
+    #[error(
+        "texture of {}×{} texels with {channels} channels needs {expected} components, got {actual}",
+        .size.x, .size.y
+    )]
+    Length {
+        /// The size asked for, in texels.
+        size: UVec2,
+        /// The number of channels asked for.
+        channels: u8,
+        /// Components that the size and channels ask for.
+        expected: usize,
+        /// Components that were given.
+        actual: usize,
+    },
+}

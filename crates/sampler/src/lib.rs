@@ -1,0 +1,71 @@
+//! What colour is there? Texel storage, address modes and texture filters.
+//!
+//! ```text
+//!   st ──► address ──► texel indices, weights ──► decode each texel ──► blend ──► linear colour
+//!         (f64, exact)     (i, j) and α, β         (sRGB table)        (f32/f64)
+//! ```
+//!
+//! ```
+//! use glam::{DVec2, UVec2};
+//! use sampler::{AddressMode, Filter, Texels, Texture, Transfer, sample};
+//!
+//! let black_white = Texture::new(UVec2::new(2, 1), 1, Transfer::Srgb, Texels::U8(vec![0, 255]))?;
+//! let between = sample(&black_white, [AddressMode::ClampToEdge; 2], Filter::Bilinear, DVec2::new(0.5, 0.5));
+//! assert_eq!(between.x, 0.5); // half the light, not half the code
+//! # Ok::<(), sampler::Error>(())
+//! ```
+//!
+//! # Storage: [`Texture`]
+//! One to four components of u8, u16 or f32 ([`Texels`]), with their [`Transfer`] function and [`AlphaMode`].
+//! Everything is checked when the texture is made; every lookup afterwards has an answer.
+//!
+//! # Colour: [`transfer`]
+//! sRGB is decoded at the texel, before any filter. Both directions are exactly rounded. Alpha is never encoded.
+//!
+//! # Where: [`AddressMode`]
+//! Texel (i, j) of N covers \[i, i+1)/N; its centre is at (i + ½)/N. Wrapping is applied to the integer index.
+//!
+//! # Between texels: [`Filter`]
+//! [`nearest`] takes the containing texel, [`bilinear`] blends four. Filtered colour that belongs to alpha should
+//! be premultiplied: [`Texture::premultiplied`] before, [`unpremultiply`] after.
+//!
+//! # Conventions
+//! Texture origin at the top left, s to the right, t down, as glTF. The lectures' upward t is 1 − t. Coordinates
+//! are f64, because a repeat counter of 10⁶ leaves an f32 with no texel position to speak of.
+//!
+//! # Accuracy
+//!
+//! | what | bound | test |
+//! | --- | --- | --- |
+//! | texel chosen by [`nearest`] | exact below 2⁵¹ repeats | `tests/properties/address.rs` |
+//! | [`bilinear`] | [`BILINEAR_MAX_ERROR_ULPS`] ulp of the largest texel read | `tests/properties/bilinear.rs` |
+//! | envelope, constants | exact | `tests/properties/bilinear.rs` |
+//! | sRGB decode, 8 and 16 bit | nearest f32 | `tests/properties/transfer.rs` |
+//! | sRGB encode, 8 bit | exactly rounded for all 2³² inputs | `tests/properties/transfer.rs` |
+//!
+//! # Limits
+//! An f32 coordinate is spaced 2⁻²⁴·2ᵏ around 2ᵏ: on a 4096 texture it stops resolving 1/256 texel beyond 16
+//! repeats. Widen to f64 where the coordinate is computed, not here. Two dimensions only; no bicubic filter yet.
+//!
+//! # Sources
+//! Vulkan 1.3, chapter "Image Operations"; Direct3D 11.3 functional specification, 3.2.3 and 7.18;
+//! IEC 61966-2-1 (sRGB); glTF 2.0, 3.8 "Texture Data".
+#![forbid(unsafe_code)]
+
+mod address;
+mod alpha;
+mod error;
+mod filter;
+mod format;
+#[cfg(feature = "image")]
+mod image;
+mod texel;
+mod texture;
+pub mod transfer;
+
+pub use address::AddressMode;
+pub use alpha::unpremultiply;
+pub use error::Error;
+pub use filter::{BILINEAR_MAX_ERROR_ULPS, BORDER, Filter, bilinear, nearest, sample};
+pub use format::{AlphaMode, Component, Format, Texels, Transfer};
+pub use texture::Texture;

@@ -1,0 +1,150 @@
+//! One stored texel to four linear values.
+
+use glam::Vec4;
+
+use crate::format::{Component, Transfer};
+use crate::transfer::{
+    decode_srgb_u8, decode_srgb_u16, decode_unorm_u8, round_to_f32, srgb_to_linear,
+};
+
+/// Codes to linear values, chosen once when the texture is made.
+#[derive(Clone, Copy)]
+pub(crate) struct Tables {
+    colour_u8: &'static [f32; 256],
+    alpha_u8: &'static [f32; 256],
+    /// Empty where 16-bit colour is linear.
+    colour_u16: &'static [f32],
+}
+
+impl std::fmt::Debug for Tables {
+    fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        formatter.write_str("Tables")
+    }
+}
+
+impl Tables {
+    pub(crate) fn of(component: Component, transfer: Transfer) -> Self {
+        let srgb = transfer == Transfer::Srgb;
+        Self {
+            colour_u8: if srgb {
+                decode_srgb_u8()
+            } else {
+                decode_unorm_u8()
+            },
+            alpha_u8: decode_unorm_u8(),
+            colour_u16: if srgb && component == Component::U16 {
+                decode_srgb_u16()
+            } else {
+                &[]
+            },
+        }
+    }
+
+    pub(crate) fn decode_row_u8<const CHANNELS: usize>(&self, stored: &[u8], row: &mut [f32]) {
+        for (out, texel) in row
+            .chunks_exact_mut(CHANNELS)
+            .zip(stored.chunks_exact(CHANNELS))
+        {
+            for channel in 0..CHANNELS {
+                let table = if is_alpha(channel, CHANNELS) {
+                    self.alpha_u8
+                } else {
+                    self.colour_u8
+                };
+                out[channel] = table[usize::from(texel[channel])];
+            }
+        }
+    }
+
+    pub(crate) fn decode_row_u16(&self, stored: &[u16], channels: usize, row: &mut [f32]) {
+        for (index, (out, &code)) in row.iter_mut().zip(stored).enumerate() {
+            *out = if is_alpha(index % channels, channels) {
+                unorm_u16(code)
+            } else {
+                self.colour_u16(code)
+            };
+        }
+    }
+
+    fn colour_u16(&self, code: u16) -> f32 {
+        self.colour_u16
+            .get(usize::from(code))
+            .copied()
+            .unwrap_or_else(|| unorm_u16(code))
+    }
+}
+
+/// Whether `channel` of `channels` is alpha: the last of two or of four.
+const fn is_alpha(channel: usize, channels: usize) -> bool {
+    channels.is_multiple_of(2) && channel + 1 == channels
+}
+
+fn unorm_u16(code: u16) -> f32 {
+    round_to_f32(f64::from(code) / 65535.0)
+}
+
+pub(crate) fn decode_row_f32_srgb(stored: &[f32], channels: usize, row: &mut [f32]) {
+    for (index, (out, &value)) in row.iter_mut().zip(stored).enumerate() {
+        *out = if is_alpha(index % channels, channels) {
+            value
+        } else {
+            srgb_to_linear(value)
+        };
+    }
+}
+
+#[inline(always)]
+pub(crate) fn read_u8<const CHANNELS: usize>(stored: &[u8], tables: &Tables, index: usize) -> Vec4 {
+    let texel = &stored[index * CHANNELS..][..CHANNELS];
+    expand(CHANNELS, |channel| {
+        let table = if is_alpha(channel, CHANNELS) {
+            tables.alpha_u8
+        } else {
+            tables.colour_u8
+        };
+        table[usize::from(texel[channel])]
+    })
+}
+
+#[inline]
+pub(crate) fn read_u16(stored: &[u16], tables: &Tables, channels: usize, index: usize) -> Vec4 {
+    let texel = &stored[index * channels..][..channels];
+    expand(channels, |channel| {
+        let code = texel[channel];
+        if is_alpha(channel, channels) {
+            unorm_u16(code)
+        } else {
+            tables.colour_u16(code)
+        }
+    })
+}
+
+#[inline]
+pub(crate) fn read_f32(stored: &[f32], transfer: Transfer, channels: usize, index: usize) -> Vec4 {
+    let texel = &stored[index * channels..][..channels];
+    expand(channels, |channel| {
+        let value = texel[channel];
+        if transfer == Transfer::Linear || is_alpha(channel, channels) {
+            value
+        } else {
+            srgb_to_linear(value)
+        }
+    })
+}
+
+/// Grey to all three colours, missing alpha to 1.
+#[inline(always)]
+fn expand(channels: usize, component: impl Fn(usize) -> f32) -> Vec4 {
+    match channels {
+        1 => {
+            let grey = component(0);
+            Vec4::new(grey, grey, grey, 1.0)
+        }
+        2 => {
+            let grey = component(0);
+            Vec4::new(grey, grey, grey, component(1))
+        }
+        3 => Vec4::new(component(0), component(1), component(2), 1.0),
+        _ => Vec4::new(component(0), component(1), component(2), component(3)),
+    }
+}

@@ -1,0 +1,188 @@
+//! The command line.
+
+use std::path::PathBuf;
+
+use clap::{Args, Parser, Subcommand};
+use texrender::{
+    Aov, Background, BitDepth, DEFAULT_FOV_Y_DEGREES, EnvironmentSource, FilterChoice,
+    FinishOptions, LoadOptions, Orbit, OutsidePaths, Settings, ToneMap, View,
+};
+
+use crate::values;
+
+/// Textured pictures of 3D scenes on a machine without a GPU.
+#[derive(Parser)]
+#[command(version, about, arg_required_else_help = true)]
+pub(crate) struct Cli {
+    #[command(subcommand)]
+    pub command: Command,
+}
+
+#[derive(Subcommand)]
+pub(crate) enum Command {
+    /// Render a scene to a picture.
+    Render(Box<RenderArgs>),
+    /// Print what a scene holds, and what a picture of it needs and why.
+    Inspect(Box<InspectArgs>),
+}
+
+#[derive(Args)]
+pub(crate) struct RenderArgs {
+    /// Scene file: .gltf or .glb.
+    pub scene: PathBuf,
+    /// Picture to write: .png, .jpg, .webp, .hdr or .exr.
+    #[arg(short, long, value_name = "FILE")]
+    pub output: PathBuf,
+    #[command(flatten)]
+    pub picture: PictureArgs,
+    /// Curve from radiance to display; EXR and HDR stay linear.
+    #[arg(long, value_name = "neutral|aces|none", default_value = "neutral", value_parser = values::tonemap)]
+    pub tonemap: ToneMap,
+    /// Stops by which the picture is brightened.
+    #[arg(long, value_name = "STOPS", default_value_t = 0.0, allow_negative_numbers = true, value_parser = values::finite)]
+    pub exposure: f32,
+    /// Bits a channel of PNG files.
+    #[arg(long, value_name = "8|16", default_value = "8", value_parser = values::bit_depth)]
+    pub bit_depth: BitDepth,
+    /// Also write depth, normal, st, mip or id; to OUTPUT itself if that is an EXR file.
+    #[arg(long, value_name = "NAME=FILE", value_parser = values::aov)]
+    pub aov: Vec<(Aov, PathBuf)>,
+    /// Write times, memory and counts as JSON; '-' for standard output.
+    #[arg(long, value_name = "FILE|-")]
+    pub stats: Option<PathBuf>,
+}
+
+#[derive(Args)]
+pub(crate) struct InspectArgs {
+    /// Scene file: .gltf or .glb.
+    pub scene: PathBuf,
+    #[command(flatten)]
+    pub picture: PictureArgs,
+}
+
+/// What decides which picture it is.
+#[derive(Args)]
+pub(crate) struct PictureArgs {
+    /// Size of the picture in pixels.
+    #[arg(long, value_name = "WxH", default_value = "1280x720", value_parser = values::size)]
+    pub size: (u32, u32),
+    /// Camera of the scene, by name or index. Without any view option: the first one, or else a view that fits
+    /// everything.
+    #[arg(long, value_name = "NAME|INDEX", conflicts_with_all = ["eye", "fov", "azimuth", "elevation", "distance"])]
+    pub camera: Option<String>,
+    /// Where the eye is.
+    #[arg(long, value_name = "X,Y,Z", requires = "target", allow_hyphen_values = true, value_parser = values::point,
+          conflicts_with_all = ["azimuth", "elevation", "distance"])]
+    pub eye: Option<glam::DVec3>,
+    /// What the eye looks at.
+    #[arg(long, value_name = "X,Y,Z", requires = "eye", allow_hyphen_values = true, value_parser = values::point)]
+    pub target: Option<glam::DVec3>,
+    /// Vertical field of view.
+    #[arg(long, value_name = "DEGREES")]
+    pub fov: Option<f64>,
+    /// Angle around the scene, from the front (+Z) toward the right (+X).
+    #[arg(long, value_name = "DEGREES", allow_negative_numbers = true)]
+    pub azimuth: Option<f64>,
+    /// Angle above the horizon.
+    #[arg(long, value_name = "DEGREES", allow_negative_numbers = true)]
+    pub elevation: Option<f64>,
+    /// Distance from the centre; as near as shows everything if left out.
+    #[arg(long, value_name = "LENGTH")]
+    pub distance: Option<f64>,
+    /// Light from afar: a latitude-longitude .hdr or .exr file, or none.
+    #[arg(long, value_name = "FILE|studio|none", default_value = "studio", value_parser = values::environment)]
+    pub env: EnvironmentSource,
+    /// Turn of the environment about the vertical.
+    #[arg(long, value_name = "DEGREES", default_value_t = 0.0, allow_negative_numbers = true)]
+    pub env_rotation: f32,
+    /// What is behind the scene: #rrggbb, transparent, or the environment.
+    #[arg(long, value_name = "COLOR|transparent|env", default_value = "#333333", value_parser = values::background)]
+    pub background: Background,
+    /// How textures are filtered.
+    #[arg(long, value_name = "nearest|bilinear|trilinear|aniso[:N]|file", default_value = "aniso:16",
+          value_parser = values::filter)]
+    pub filter: FilterChoice,
+    /// Coverage samples a pixel: 1, 2, 4, 8, 16, 32 or 64.
+    #[arg(long, value_name = "N", default_value_t = 4)]
+    pub samples: u32,
+    /// Seconds into an animation; the rest pose if left out.
+    #[arg(long, value_name = "SECONDS", value_parser = values::seconds)]
+    pub time: Option<f64>,
+    /// Animation that --time refers to, by name or index; the first if left out.
+    #[arg(long, value_name = "NAME|INDEX", requires = "time")]
+    pub animation: Option<String>,
+    /// Threads; all cores if left out.
+    #[arg(long, value_name = "N", value_parser = values::threads)]
+    pub threads: Option<usize>,
+    /// Memory that the scene, its textures and the picture may take.
+    #[arg(long, value_name = "SIZE", default_value = "4GiB", value_parser = values::memory)]
+    pub max_memory: u64,
+    /// Let the scene refer to files outside its folder.
+    #[arg(long)]
+    pub allow_outside: bool,
+}
+
+impl PictureArgs {
+    pub(crate) fn load_options(&self) -> LoadOptions {
+        LoadOptions {
+            time: self.time,
+            animation: self.animation.clone(),
+            outside: if self.allow_outside {
+                OutsidePaths::Allowed
+            } else {
+                OutsidePaths::Refused
+            },
+            max_memory: self.max_memory,
+        }
+    }
+
+    pub(crate) fn settings(&self, aovs: Vec<Aov>) -> Settings {
+        Settings {
+            width: self.size.0,
+            height: self.size.1,
+            view: self.view(),
+            environment: self.env.clone(),
+            environment_rotation: self.env_rotation,
+            background: self.background,
+            filter: self.filter,
+            samples: self.samples,
+            aovs,
+            max_memory: self.max_memory,
+            ..Settings::default()
+        }
+    }
+
+    fn view(&self) -> View {
+        let fov_y_degrees = self.fov.unwrap_or(DEFAULT_FOV_Y_DEGREES);
+        if let Some(camera) = &self.camera {
+            return View::Camera(camera.clone());
+        }
+        if let (Some(eye), Some(target)) = (self.eye, self.target) {
+            return View::LookAt {
+                eye,
+                target,
+                fov_y_degrees,
+            };
+        }
+        let asked = [self.azimuth, self.elevation, self.distance, self.fov];
+        if asked.iter().all(Option::is_none) {
+            return View::Default;
+        }
+        View::Orbit(Orbit {
+            azimuth_degrees: self.azimuth.unwrap_or(0.0),
+            elevation_degrees: self.elevation.unwrap_or(0.0),
+            distance: self.distance,
+            fov_y_degrees,
+        })
+    }
+}
+
+impl RenderArgs {
+    pub(crate) fn finish_options(&self) -> FinishOptions {
+        FinishOptions {
+            tonemap: self.tonemap,
+            exposure: self.exposure,
+            bit_depth: self.bit_depth,
+        }
+    }
+}

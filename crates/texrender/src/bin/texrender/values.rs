@@ -1,0 +1,163 @@
+//! Values of the command line, from text.
+
+use std::path::PathBuf;
+
+use glam::{DVec3, Vec3};
+use texrender::sampler::transfer::srgb_to_linear;
+use texrender::{Aov, Background, BitDepth, EnvironmentSource, FilterChoice, ToneMap};
+
+pub(crate) fn size(text: &str) -> Result<(u32, u32), String> {
+    let parse = || {
+        let (width, height) = text.split_once(['x', 'X'])?;
+        Some((width.trim().parse().ok()?, height.trim().parse().ok()?))
+    };
+    parse().ok_or_else(|| "write width x height in pixels, such as 1920x1080".to_owned())
+}
+
+pub(crate) fn point(text: &str) -> Result<DVec3, String> {
+    let parts: Option<Vec<f64>> = text.split(',').map(|p| p.trim().parse().ok()).collect();
+    match parts.as_deref() {
+        Some(&[x, y, z]) if DVec3::new(x, y, z).is_finite() => Ok(DVec3::new(x, y, z)),
+        _ => Err("write three finite numbers, such as 1,2.5,-3".to_owned()),
+    }
+}
+
+pub(crate) fn finite(text: &str) -> Result<f32, String> {
+    text.parse()
+        .ok()
+        .filter(|x: &f32| x.is_finite())
+        .ok_or_else(|| "write a finite number".to_owned())
+}
+
+pub(crate) fn seconds(text: &str) -> Result<f64, String> {
+    text.parse()
+        .ok()
+        .filter(|x: &f64| x.is_finite() && *x >= 0.0)
+        .ok_or_else(|| "write seconds, 0 or more".to_owned())
+}
+
+pub(crate) fn threads(text: &str) -> Result<usize, String> {
+    text.parse()
+        .ok()
+        .filter(|n| (1..=1024).contains(n))
+        .ok_or_else(|| "write a number of threads, 1 to 1024".to_owned())
+}
+
+pub(crate) fn tonemap(text: &str) -> Result<ToneMap, String> {
+    match text {
+        "neutral" => Ok(ToneMap::Neutral),
+        "aces" => Ok(ToneMap::Aces),
+        "none" => Ok(ToneMap::None),
+        _ => Err("choose neutral, aces or none".to_owned()),
+    }
+}
+
+pub(crate) fn bit_depth(text: &str) -> Result<BitDepth, String> {
+    match text {
+        "8" => Ok(BitDepth::Eight),
+        "16" => Ok(BitDepth::Sixteen),
+        _ => Err("choose 8 or 16".to_owned()),
+    }
+}
+
+pub(crate) fn aov(text: &str) -> Result<(Aov, PathBuf), String> {
+    let names: Vec<&str> = Aov::ALL.iter().map(|a| a.name()).collect();
+    let usage = || {
+        format!(
+            "write NAME=FILE with one of {} as its name",
+            names.join(", ")
+        )
+    };
+    let (name, path) = text.split_once('=').ok_or_else(usage)?;
+    let aov = Aov::ALL.into_iter().find(|a| a.name() == name);
+    match aov {
+        Some(aov) if !path.is_empty() => Ok((aov, PathBuf::from(path))),
+        _ => Err(usage()),
+    }
+}
+
+#[expect(
+    clippy::unnecessary_wraps,
+    reason = "a value parser returns a Result; a wrong file name is found when it is read"
+)]
+pub(crate) fn environment(text: &str) -> Result<EnvironmentSource, String> {
+    Ok(match text {
+        "studio" => EnvironmentSource::Studio,
+        "none" => EnvironmentSource::None,
+        path => EnvironmentSource::File(PathBuf::from(path)),
+    })
+}
+
+pub(crate) fn background(text: &str) -> Result<Background, String> {
+    match text {
+        "transparent" => return Ok(Background::Transparent),
+        "env" => return Ok(Background::Environment),
+        _ => {}
+    }
+    let codes = match text {
+        "black" => Some([0, 0, 0]),
+        "white" => Some([255, 255, 255]),
+        _ => hex_color(text),
+    };
+    codes
+        .map(|codes| {
+            Background::Color(Vec3::from(
+                codes.map(|code| srgb_to_linear(f32::from(code) / 255.0)),
+            ))
+        })
+        .ok_or_else(|| {
+            "write #rrggbb (an sRGB colour), black, white, transparent or env".to_owned()
+        })
+}
+
+/// `#rrggbb` or `#rgb`.
+fn hex_color(text: &str) -> Option<[u8; 3]> {
+    let digits = text.strip_prefix('#')?;
+    let nibbles: Option<Vec<u8>> = digits
+        .chars()
+        .map(|c| c.to_digit(16).and_then(|d| u8::try_from(d).ok()))
+        .collect();
+    match *nibbles?.as_slice() {
+        [r, g, b] => Some([r * 17, g * 17, b * 17]),
+        [r, s, g, h, b, c] => Some([r << 4 | s, g << 4 | h, b << 4 | c]),
+        _ => None,
+    }
+}
+
+pub(crate) fn filter(text: &str) -> Result<FilterChoice, String> {
+    match text {
+        "nearest" => return Ok(FilterChoice::Nearest),
+        "bilinear" => return Ok(FilterChoice::Bilinear),
+        "trilinear" => return Ok(FilterChoice::Trilinear),
+        "aniso" => return Ok(FilterChoice::Anisotropic(16.0)),
+        "file" => return Ok(FilterChoice::File),
+        _ => {}
+    }
+    text.strip_prefix("aniso:")
+        .and_then(|n| n.parse().ok())
+        .filter(|n: &f32| (1.0..=64.0).contains(n))
+        .map(FilterChoice::Anisotropic)
+        .ok_or_else(|| {
+            "choose nearest, bilinear, trilinear, aniso, aniso:N (N from 1 to 64) or file"
+                .to_owned()
+        })
+}
+
+/// A size with an optional unit: bytes, or K, M, G with or without iB.
+pub(crate) fn memory(text: &str) -> Result<u64, String> {
+    let lower = text.trim().to_ascii_lowercase();
+    let number = lower.trim_end_matches(|c: char| c.is_ascii_alphabetic());
+    let shift = match &lower[number.len()..] {
+        "" | "b" => Some(0),
+        "k" | "kb" | "kib" => Some(10),
+        "m" | "mb" | "mib" => Some(20),
+        "g" | "gb" | "gib" => Some(30),
+        _ => None,
+    };
+    let value: Option<u64> = number.trim().parse().ok();
+    shift
+        .zip(value)
+        .and_then(|(shift, value)| value.checked_mul(1 << shift))
+        .filter(|&bytes| bytes > 0)
+        .ok_or_else(|| "write a size such as 512MiB or 4GiB".to_owned())
+}

@@ -1,0 +1,185 @@
+//! Display pictures: PNG, JPEG, WebP; and linear HDR.
+
+use std::io::Cursor;
+use std::path::Path;
+
+use glam::Vec3;
+use image::codecs::hdr::HdrEncoder;
+use image::codecs::jpeg::JpegEncoder;
+use image::codecs::png::{CompressionType, FilterType, PngEncoder};
+use image::codecs::webp::WebPEncoder;
+use image::{ExtendedColorType, ImageEncoder, Rgb};
+use rayon::prelude::*;
+use sampler::transfer::{encode_srgb_u8, encode_srgb_u16, encode_unorm_u8, encode_unorm_u16};
+
+use super::{FinishOptions, ToneMap, developed, gain};
+use crate::error::Error;
+use crate::render::Film;
+use crate::settings::Background;
+
+/// Quality of JPEG files, 1..=100.
+const JPEG_QUALITY: u8 = 92;
+
+/// A format of picture files.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum FileFormat {
+    /// sRGB, lossless, with alpha.
+    Png,
+    /// sRGB, lossy.
+    Jpeg,
+    /// sRGB, lossless, with alpha.
+    WebP,
+    /// Linear, shared exponent.
+    Hdr,
+    /// Linear floats, with alpha and AOVs.
+    Exr,
+}
+
+/// Bits a channel.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum BitDepth {
+    /// 8 bits.
+    #[default]
+    Eight,
+    /// 16 bits, PNG only.
+    Sixteen,
+}
+
+impl FileFormat {
+    /// The format that a file's extension names.
+    ///
+    /// # Errors
+    /// [`Error::Write`] for an extension that names none.
+    pub fn of(path: &Path) -> Result<Self, Error> {
+        let extension = path.extension().and_then(|e| e.to_str());
+        match extension.map(str::to_ascii_lowercase).as_deref() {
+            Some("png") => Ok(Self::Png),
+            Some("jpg" | "jpeg") => Ok(Self::Jpeg),
+            Some("webp") => Ok(Self::WebP),
+            Some("hdr") => Ok(Self::Hdr),
+            Some("exr") => Ok(Self::Exr),
+            _ => Err(Error::Write {
+                path: path.to_owned(),
+                detail: "its extension names no format; use .png, .jpg, .webp, .hdr or .exr"
+                    .to_owned(),
+            }),
+        }
+    }
+}
+
+/// The bytes of a picture file.
+pub(super) fn encode(
+    film: &Film,
+    format: FileFormat,
+    options: &FinishOptions,
+) -> Result<Vec<u8>, String> {
+    use ExtendedColorType as Kind;
+    let transparent = film.background() == Background::Transparent;
+    let (samples, kind) = match (format, options.bit_depth) {
+        (FileFormat::Hdr, _) => return encode_hdr(film, options),
+        (FileFormat::Png, BitDepth::Sixteen) => (
+            display(film, options, |c| encode_srgb_u16(c).to_ne_bytes(), |a| {
+                encode_unorm_u16(a).to_ne_bytes()
+            }),
+            if transparent { Kind::Rgba16 } else { Kind::Rgb16 },
+        ),
+        _ => (
+            display(film, options, |c| [encode_srgb_u8(c)], |a| {
+                [encode_unorm_u8(a)]
+            }),
+            if transparent { Kind::Rgba8 } else { Kind::Rgb8 },
+        ),
+    };
+    write(&samples, (film.width(), film.height()), kind, format)
+}
+
+fn encode_hdr(film: &Film, options: &FinishOptions) -> Result<Vec<u8>, String> {
+    let gain = gain(options);
+    let pixels: Vec<Rgb<f32>> = rows(film, |x, y, out| {
+        let (color, _) = developed(film, x, y, gain, ToneMap::None);
+        out.push(Rgb(color.to_array()));
+    });
+    let mut bytes = Vec::new();
+    HdrEncoder::new(&mut bytes)
+        .encode(&pixels, film.width() as usize, film.height() as usize)
+        .map_err(|e| e.to_string())?;
+    Ok(bytes)
+}
+
+/// Encoded display samples, straight alpha, row by row.
+fn display<const BYTES: usize>(
+    film: &Film,
+    options: &FinishOptions,
+    color_code: impl Fn(f32) -> [u8; BYTES] + Sync,
+    alpha_code: impl Fn(f32) -> [u8; BYTES] + Sync,
+) -> Vec<u8> {
+    let gain = gain(options);
+    let transparent = film.background() == Background::Transparent;
+    rows(film, |x, y, out| {
+        let (color, alpha) = developed(film, x, y, gain, options.tonemap);
+        let straight = if transparent && alpha > 0.0 {
+            color / alpha
+        } else {
+            color
+        };
+        for c in straight.to_array() {
+            out.extend(color_code(c));
+        }
+        if transparent {
+            out.extend(alpha_code(alpha));
+        }
+    })
+}
+
+/// Values of all pixels, row by row, made in parallel.
+pub(super) fn rows<T: Send>(film: &Film, pixel: impl Fn(u32, u32, &mut Vec<T>) + Sync) -> Vec<T> {
+    let rows: Vec<Vec<T>> = (0..film.height())
+        .into_par_iter()
+        .map(|y| {
+            let mut row = Vec::new();
+            for x in 0..film.width() {
+                pixel(x, y, &mut row);
+            }
+            row
+        })
+        .collect();
+    rows.into_iter().flatten().collect()
+}
+
+/// The bytes of an 8-bit RGB picture whose channels are given in 0..=1, as they are to be stored.
+pub(super) fn encode_rgb8(
+    film: &Film,
+    format: FileFormat,
+    pixel: impl Fn(u32, u32) -> Vec3 + Sync,
+) -> Result<Vec<u8>, String> {
+    let samples = rows(film, |x, y, out| {
+        out.extend(pixel(x, y).to_array().map(encode_unorm_u8));
+    });
+    let size = (film.width(), film.height());
+    write(&samples, size, ExtendedColorType::Rgb8, format)
+}
+
+fn write(
+    samples: &[u8],
+    (width, height): (u32, u32),
+    kind: ExtendedColorType,
+    format: FileFormat,
+) -> Result<Vec<u8>, String> {
+    let mut bytes = Cursor::new(Vec::new());
+    match format {
+        FileFormat::Png => {
+            PngEncoder::new_with_quality(&mut bytes, CompressionType::Fast, FilterType::Adaptive)
+                .write_image(samples, width, height, kind)
+        }
+        FileFormat::Jpeg => JpegEncoder::new_with_quality(&mut bytes, JPEG_QUALITY)
+            .write_image(samples, width, height, kind),
+        FileFormat::WebP => {
+            WebPEncoder::new_lossless(&mut bytes).write_image(samples, width, height, kind)
+        }
+        FileFormat::Hdr | FileFormat::Exr => {
+            return Err("the format holds radiance, not codes".to_owned());
+        }
+    }
+    .map_err(|error| error.to_string())?;
+    Ok(bytes.into_inner())
+}

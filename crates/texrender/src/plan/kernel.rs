@@ -1,0 +1,345 @@
+//! The smallest kernel that serves a surface.
+
+use glam::{Vec3, Vec4};
+use mipmap::{MipFilter, SamplerState};
+use sampler::Filter;
+use texcoord::AffineTransform;
+
+use super::texture::{PyramidNeed, TextureNeed, TextureRole};
+use super::{Plan, TangentNeed};
+use crate::scene::{
+    AlphaMode, Material, MaterialModel, Primitive, Scene, TextureUse, Topology,
+};
+use crate::settings::FilterChoice;
+
+/// How the surface of a primitive is shaded: its factors, and the maps that change them.
+#[derive(Clone, Debug)]
+pub struct Kernel {
+    /// Name of the material, or empty.
+    pub material: String,
+    /// Which of its samples are covered.
+    pub coverage: Coverage,
+    /// Which of its sides are drawn.
+    pub sidedness: Sidedness,
+    /// Whether vertex colours multiply the base colour.
+    pub vertex_colors: bool,
+    /// Linear; multiplies the map.
+    pub base_color: Vec4,
+    /// Colour, and alpha where coverage asks for it.
+    pub base_color_map: Option<Map>,
+    /// Linear radiance; multiplies the map.
+    pub emissive: Vec3,
+    /// Emitted colour.
+    pub emissive_map: Option<Map>,
+    /// What light does to it.
+    pub lighting: Lighting,
+}
+
+/// Which samples of a surface are covered.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Coverage {
+    /// All.
+    Opaque,
+    /// Those with at least this alpha.
+    Mask {
+        /// The least alpha that is visible.
+        cutoff: f32,
+    },
+    /// All, each by its alpha.
+    Blend,
+}
+
+/// Which sides of a surface are drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Sidedness {
+    /// The front.
+    Single,
+    /// Both; the back with its normal turned.
+    Double,
+}
+
+/// What light does to a surface.
+#[derive(Clone, Debug)]
+pub enum Lighting {
+    /// Nothing: the base colour is what is seen.
+    Unlit,
+    /// Reflects it.
+    Lit(LitKernel),
+}
+
+/// The part of a kernel that only lit surfaces have.
+#[derive(Clone, Debug)]
+pub struct LitKernel {
+    /// The equation and its maps.
+    pub reflectance: Reflectance,
+    /// Normal map, its scale, and where tangents come from.
+    pub normal: Option<(Map, f32, TangentSource)>,
+    /// Occlusion map and its strength.
+    pub occlusion: Option<(Map, f32)>,
+}
+
+/// A reflectance model with the maps that vary it; factors and channels are those of
+/// [`MaterialModel`].
+#[derive(Clone, Debug)]
+#[expect(missing_docs, reason = "the fields are documented at MaterialModel")]
+pub enum Reflectance {
+    /// glTF 2.0's core model.
+    MetallicRoughness {
+        metallic: f32,
+        roughness: f32,
+        map: Option<Map>,
+        ior: f32,
+        specular: f32,
+        specular_map: Option<Map>,
+        specular_color: Vec3,
+        specular_color_map: Option<Map>,
+    },
+    /// KHR_materials_pbrSpecularGlossiness.
+    SpecularGlossiness {
+        specular: Vec3,
+        glossiness: f32,
+        map: Option<Map>,
+    },
+}
+
+/// Where the tangents of a normal map come from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum TangentSource {
+    /// The file.
+    File,
+    /// Generated: index into [`Plan::tangents`].
+    Generated(usize),
+}
+
+/// A texture as a kernel samples it.
+#[derive(Clone, Copy, Debug)]
+pub struct Map {
+    /// Index into [`Plan::textures`].
+    pub texture: usize,
+    /// Address modes and filters.
+    pub sampler: SamplerState,
+    /// Set of texture coordinates.
+    pub texcoord: usize,
+    /// Applied to the coordinates; `None` for the identity.
+    pub transform: Option<AffineTransform>,
+}
+
+impl Kernel {
+    /// Whether light reaches the surface.
+    #[must_use]
+    pub fn is_lit(&self) -> bool {
+        matches!(self.lighting, Lighting::Lit(_))
+    }
+}
+
+/// Turns the material of one primitive into a kernel, listing what it needs in the plan.
+pub(super) struct KernelBuilder<'a> {
+    scene: &'a Scene,
+    index: usize,
+    primitive: &'a Primitive,
+    material: Material,
+    plan: &'a mut Plan,
+}
+
+impl<'a> KernelBuilder<'a> {
+    pub(super) fn new(scene: &'a Scene, index: usize, plan: &'a mut Plan) -> Self {
+        let primitive = &scene.primitives[index];
+        Self {
+            scene,
+            index,
+            primitive,
+            material: scene.material(primitive),
+            plan,
+        }
+    }
+
+    pub(super) fn build(mut self) -> Kernel {
+        let coverage = match self.material.alpha_mode {
+            AlphaMode::Opaque => Coverage::Opaque,
+            AlphaMode::Mask { cutoff } => Coverage::Mask { cutoff },
+            AlphaMode::Blend => Coverage::Blend,
+        };
+        let color_role = match coverage {
+            Coverage::Opaque => TextureRole::Colour,
+            Coverage::Mask { .. } | Coverage::Blend => TextureRole::ColourWithAlpha,
+        };
+        let emissive = self.material.emissive;
+        // A factor of zero hides its map; alpha still needs the map of a black surface.
+        let base_color = self.material.base_color;
+        let shows_color = base_color.truncate() != Vec3::ZERO || coverage != Coverage::Opaque;
+        Kernel {
+            material: self.material.name.clone(),
+            coverage,
+            sidedness: if self.material.double_sided {
+                Sidedness::Double
+            } else {
+                Sidedness::Single
+            },
+            vertex_colors: self.primitive.colors.is_some(),
+            base_color,
+            base_color_map: self.map_if(
+                shows_color,
+                self.material.base_color_map,
+                color_role,
+                "base colour",
+            ),
+            lighting: self.lighting(),
+            emissive,
+            emissive_map: self.map_if(
+                emissive != Vec3::ZERO,
+                self.material.emissive_map,
+                TextureRole::Colour,
+                "emission",
+            ),
+        }
+    }
+
+    fn lighting(&mut self) -> Lighting {
+        // glTF 2.0, section 3.7.2.1: points and lines without normals are not lit.
+        let bare =
+            self.primitive.topology != Topology::Triangles && self.primitive.normals.is_none();
+        match self.reflectance() {
+            Some(reflectance) if !bare => Lighting::Lit(LitKernel {
+                reflectance,
+                normal: self.normal(),
+                occlusion: self.occlusion(),
+            }),
+            _ => Lighting::Unlit,
+        }
+    }
+
+    /// `None` for an unlit material.
+    fn reflectance(&mut self) -> Option<Reflectance> {
+        match self.material.model {
+            MaterialModel::Unlit => None,
+            MaterialModel::MetallicRoughness {
+                metallic,
+                roughness,
+                map,
+                ior,
+                specular,
+                specular_map,
+                specular_color,
+                specular_color_map,
+            } => {
+                let varies = metallic != 0.0 || roughness != 0.0;
+                let layered = specular != 0.0;
+                Some(Reflectance::MetallicRoughness {
+                    metallic,
+                    roughness,
+                    map: self.map_if(varies, map, TextureRole::Data, "metallic and roughness"),
+                    ior,
+                    specular,
+                    specular_map: self.map_if(
+                        layered,
+                        specular_map,
+                        TextureRole::Data,
+                        "specular",
+                    ),
+                    specular_color,
+                    specular_color_map: self.map_if(
+                        layered,
+                        specular_color_map,
+                        TextureRole::Colour,
+                        "specular colour",
+                    ),
+                })
+            }
+            MaterialModel::SpecularGlossiness {
+                specular,
+                glossiness,
+                map,
+            } => Some(Reflectance::SpecularGlossiness {
+                specular,
+                glossiness,
+                map: self.map_if(
+                    true,
+                    map,
+                    TextureRole::ColourAndData,
+                    "specular and glossiness",
+                ),
+            }),
+        }
+    }
+
+    fn normal(&mut self) -> Option<(Map, f32, TangentSource)> {
+        let normal = self.material.normal?;
+        if self.primitive.topology != Topology::Triangles {
+            return None;
+        }
+        let bends = normal.scale != 0.0;
+        let map = self.map_if(bends, Some(normal.map), TextureRole::Normal, "normal")?;
+        let source = if self.primitive.tangents.is_some() {
+            TangentSource::File
+        } else {
+            self.plan.tangents.push(TangentNeed {
+                primitive: self.index,
+                texcoord: normal.map.texcoord,
+                transform: normal.map.transform,
+            });
+            TangentSource::Generated(self.plan.tangents.len() - 1)
+        };
+        Some((map, normal.scale, source))
+    }
+
+    fn occlusion(&mut self) -> Option<(Map, f32)> {
+        let occlusion = self.material.occlusion?;
+        // Occlusion dims the surroundings' light; without surroundings there is nothing to dim.
+        let dims = occlusion.strength != 0.0
+            && self.plan.settings.environment != crate::settings::EnvironmentSource::None;
+        let map = self.map_if(dims, Some(occlusion.map), TextureRole::Data, "occlusion")?;
+        Some((map, occlusion.strength))
+    }
+
+    /// A map, if the surface needs it and the primitive has coordinates for it.
+    fn map_if(
+        &mut self,
+        needed: bool,
+        source: Option<TextureUse>,
+        role: TextureRole,
+        purpose: &str,
+    ) -> Option<Map> {
+        let source = source.filter(|_| needed)?;
+        let texture = self.scene.textures.get(source.texture)?;
+        if source.texcoord >= self.primitive.texcoords.len() {
+            self.plan.warnings.push(format!(
+                "mesh '{}' has no TEXCOORD_{} for the {purpose} map of material '{}'; drawn without that map",
+                self.primitive.name, source.texcoord, self.material.name
+            ));
+            return None;
+        }
+        let sampler = chosen_filter(self.plan.settings.filter, texture.sampler);
+        let minified = sampler.mip != MipFilter::None || sampler.max_anisotropy > 1.0;
+        let pyramid = if minified {
+            PyramidNeed::Full
+        } else {
+            PyramidNeed::None
+        };
+        let reason = format!("{purpose} of '{}'", self.material.name);
+        Some(Map {
+            texture: TextureNeed::list(&mut self.plan.textures, texture.image, role, pyramid, reason),
+            sampler,
+            texcoord: source.texcoord,
+            transform: (!source.transform.is_identity()).then(|| source.transform.affine()),
+        })
+    }
+}
+
+/// The author's sampler with the user's filter.
+fn chosen_filter(choice: FilterChoice, authored: SamplerState) -> SamplerState {
+    let with = |magnify, minify, mip, max_anisotropy| SamplerState {
+        magnify,
+        minify,
+        mip,
+        max_anisotropy,
+        ..authored
+    };
+    let linear = Filter::Bilinear;
+    match choice {
+        FilterChoice::File => authored,
+        FilterChoice::Nearest => with(Filter::Nearest, Filter::Nearest, MipFilter::None, 1.0),
+        FilterChoice::Bilinear => with(linear, linear, MipFilter::None, 1.0),
+        FilterChoice::Trilinear => with(linear, linear, MipFilter::Linear, 1.0),
+        FilterChoice::Anisotropic(n) => with(authored.magnify, linear, MipFilter::Linear, n),
+    }
+}

@@ -1,0 +1,102 @@
+//! Which images are decoded, as what.
+
+use glam::UVec2;
+use rayon::prelude::*;
+
+use super::Plan;
+use crate::error::Error;
+use crate::prepare::decode;
+use crate::scene::Scene;
+
+/// An image that the picture needs, in one role.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TextureNeed {
+    /// Index into [`Scene::images`].
+    pub image: usize,
+    /// What its texels mean.
+    pub role: TextureRole,
+    /// Whether mip levels are built.
+    pub pyramid: PyramidNeed,
+    /// Size in texels, from its header.
+    pub size: UVec2,
+    /// Bytes of a decoded texel.
+    pub texel_bytes: u64,
+    /// What it is for, one entry a use.
+    pub reasons: Vec<String>,
+}
+
+/// What the texels of an image mean, which decides how they are decoded and filtered.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum TextureRole {
+    /// sRGB colour; alpha, if there is any, is dropped.
+    Colour,
+    /// sRGB colour with the alpha that covers it.
+    ColourWithAlpha,
+    /// sRGB colour beside a number in alpha that has nothing to do with it.
+    ColourAndData,
+    /// Numbers.
+    Data,
+    /// Directions.
+    Normal,
+}
+
+/// Whether mip levels are built.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum PyramidNeed {
+    /// The image alone.
+    None,
+    /// All levels down to one texel.
+    Full,
+}
+
+impl TextureNeed {
+    /// Lists a need, merged with an equal one; returns its index.
+    pub(super) fn list(
+        needs: &mut Vec<Self>,
+        image: usize,
+        role: TextureRole,
+        pyramid: PyramidNeed,
+        reason: String,
+    ) -> usize {
+        let found = needs
+            .iter()
+            .position(|need| need.image == image && need.role == role);
+        let index = found.unwrap_or_else(|| {
+            needs.push(Self {
+                image,
+                role,
+                pyramid,
+                size: UVec2::ZERO,
+                texel_bytes: 0,
+                reasons: Vec::new(),
+            });
+            needs.len() - 1
+        });
+        let need = &mut needs[index];
+        need.pyramid = need.pyramid.max(pyramid);
+        if !need.reasons.contains(&reason) {
+            need.reasons.push(reason);
+        }
+        index
+    }
+
+    /// Bytes it will take once prepared.
+    #[must_use]
+    pub fn bytes(&self) -> u64 {
+        let level0 = u64::from(self.size.x) * u64::from(self.size.y) * self.texel_bytes;
+        match self.pyramid {
+            PyramidNeed::None => level0,
+            PyramidNeed::Full => level0 + level0 / 3,
+        }
+    }
+}
+
+/// Reads the sizes of the listed images from their headers.
+pub(super) fn measure(scene: &Scene, plan: &mut Plan) -> Result<(), Error> {
+    plan.textures.par_iter_mut().try_for_each(|need| {
+        let header = decode::header(&scene.images[need.image])?;
+        need.size = header.size;
+        need.texel_bytes = header.texel_bytes;
+        Ok(())
+    })
+}

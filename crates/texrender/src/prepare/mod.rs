@@ -1,0 +1,166 @@
+//! Stage 3: Plan → [`Resources`]: decode and build what the plan lists, in parallel.
+
+pub(crate) mod decode;
+mod environment;
+mod tangents;
+
+use std::collections::BTreeMap;
+
+use glam::Vec4;
+use mipmap::{Content, Pyramid};
+use rayon::prelude::*;
+use sampler::{AlphaMode, Texture, Transfer};
+use shading::ReflectanceTable;
+
+use crate::error::Error;
+use crate::plan::{Plan, PyramidNeed, TextureNeed, TextureRole};
+use crate::scene::Scene;
+pub use environment::Environment;
+
+/// Everything that rendering reads beside the scene and the plan.
+#[derive(Debug)]
+pub struct Resources {
+    /// One for each of [`Plan::textures`].
+    pub textures: Vec<Pyramid>,
+    /// One for each of [`Plan::tangents`]: tangents a triangle corner.
+    pub tangents: Vec<Vec<[Vec4; 3]>>,
+    /// The environment, if the plan needs one.
+    pub environment: Option<Environment>,
+    /// The surfaces' share of environment light, if any surface is lit by it.
+    pub reflectance: Option<ReflectanceTable>,
+    /// What was made.
+    pub counts: PrepareCounts,
+}
+
+/// How much was decoded and built.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
+pub struct PrepareCounts {
+    /// Images decoded.
+    pub images_decoded: usize,
+    /// Bytes of all textures and their mip levels.
+    pub texture_bytes: usize,
+    /// Textures with mip levels.
+    pub pyramids_built: usize,
+    /// Meshes whose tangents were generated.
+    pub tangents_built: usize,
+    /// Corners of those meshes whose tangent does not follow from the mesh.
+    pub tangent_fallbacks: usize,
+    /// Irradiance and blurred environment maps.
+    pub environment_tables_built: usize,
+}
+
+/// Makes what the plan lists. `scene` is the one the plan was made for.
+///
+/// # Errors
+/// [`Error`] for an image that does not decode, or an environment that is not a picture.
+pub fn prepare(scene: &Scene, plan: &Plan) -> Result<Resources, Error> {
+    // Images and the environment take longest: they go first and share the cores.
+    let (textures, environment) = rayon::join(
+        || textures(scene, plan),
+        || {
+            let need = plan.environment.as_ref();
+            need.map(|need| environment::prepare(need, plan))
+                .transpose()
+        },
+    );
+    let (textures, environment) = (textures?, environment?);
+    let generated: Vec<_> = plan
+        .tangents
+        .par_iter()
+        .map(|need| tangents::generate(&scene.primitives[need.primitive], need))
+        .collect();
+    let counts = PrepareCounts {
+        images_decoded: by_image(plan).len(),
+        texture_bytes: textures.iter().map(Pyramid::byte_len).sum(),
+        pyramids_built: textures.iter().filter(|p| p.levels() > 1).count(),
+        tangents_built: generated.len(),
+        tangent_fallbacks: generated.iter().map(|t| t.fallbacks).sum(),
+        environment_tables_built: environment.as_ref().map_or(0, Environment::tables),
+    };
+    let reflectance = plan
+        .environment
+        .as_ref()
+        .filter(|need| need.lights_surfaces)
+        .map(|_| ReflectanceTable::new());
+    Ok(Resources {
+        textures,
+        tangents: generated.into_iter().map(|t| t.corners).collect(),
+        environment,
+        reflectance,
+        counts,
+    })
+}
+
+/// The needs of each image, so that it is decoded once.
+fn by_image(plan: &Plan) -> BTreeMap<usize, Vec<usize>> {
+    let mut uses: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
+    for (index, need) in plan.textures.iter().enumerate() {
+        uses.entry(need.image).or_default().push(index);
+    }
+    uses
+}
+
+fn textures(scene: &Scene, plan: &Plan) -> Result<Vec<Pyramid>, Error> {
+    let mut uses: Vec<(usize, Vec<usize>)> = by_image(plan).into_iter().collect();
+    // Largest first, so that no core is left with one at the end.
+    uses.sort_by_key(|(_, needs)| {
+        let size = plan.textures[needs[0]].size;
+        std::cmp::Reverse(u64::from(size.x) * u64::from(size.y))
+    });
+    let made: Vec<Vec<(usize, Pyramid)>> = uses
+        .into_par_iter()
+        .map(|(image, needs)| {
+            let source = &scene.images[image];
+            let picture = decode::image(source, plan.settings.max_memory)?;
+            let copies = std::iter::repeat_n(picture, needs.len());
+            needs
+                .into_iter()
+                .zip(copies)
+                .map(|(index, picture)| {
+                    pyramid(&plan.textures[index], picture, &source.name).map(|p| (index, p))
+                })
+                .collect::<Result<_, Error>>()
+        })
+        .collect::<Result<_, Error>>()?;
+    let mut made: Vec<(usize, Pyramid)> = made.into_iter().flatten().collect();
+    made.sort_by_key(|(index, _)| *index);
+    Ok(made.into_iter().map(|(_, pyramid)| pyramid).collect())
+}
+
+/// A decoded image as the texture that a need describes.
+fn pyramid(
+    need: &TextureNeed,
+    picture: image::DynamicImage,
+    name: &str,
+) -> Result<Pyramid, Error> {
+    let texture = |picture, transfer| {
+        Texture::from_image(picture, transfer).map_err(|error| Error::Image {
+            name: name.to_owned(),
+            detail: error.to_string(),
+        })
+    };
+    let (texture, content) = match need.role {
+        TextureRole::Colour => (
+            texture(decode::without_alpha(picture), Transfer::Srgb)?,
+            Content::Colour,
+        ),
+        TextureRole::ColourWithAlpha => (
+            texture(picture, Transfer::Srgb)?.premultiplied(),
+            Content::Colour,
+        ),
+        // Not alpha at all: marked premultiplied, colour is filtered without regard to it.
+        TextureRole::ColourAndData => (
+            texture(picture, Transfer::Srgb)?.with_alpha(AlphaMode::Premultiplied),
+            Content::Colour,
+        ),
+        TextureRole::Data => (texture(picture, Transfer::Linear)?, Content::Data),
+        TextureRole::Normal => (
+            texture(decode::without_alpha(picture), Transfer::Linear)?,
+            Content::Normal,
+        ),
+    };
+    Ok(match need.pyramid {
+        PyramidNeed::None => Pyramid::single(texture),
+        PyramidNeed::Full => Pyramid::build(texture, content),
+    })
+}

@@ -1,0 +1,161 @@
+//! The picture before it is finished: linear, per pixel, tile by tile.
+
+use glam::{UVec2, Vec3, Vec4};
+use raster::{TILE_SIZE, TileGrid};
+
+use super::RenderCounts;
+use crate::plan::Plan;
+use crate::settings::{Aov, Background};
+
+/// A rendered frame, linear and not yet tone-mapped.
+#[derive(Debug)]
+pub struct Film {
+    width: u32,
+    height: u32,
+    grid: TileGrid,
+    tiles: Vec<FilmTile>,
+    aovs: Vec<Aov>,
+    background: Background,
+    /// What the frame cost.
+    pub counts: RenderCounts,
+}
+
+/// The pixels of one tile, row by row.
+#[derive(Debug)]
+pub(super) struct FilmTile {
+    /// Lit light and its coverage, premultiplied.
+    pub lit: Vec<Vec4>,
+    /// Unlit colour and its coverage, premultiplied, if any visible surface is unlit.
+    pub unlit: Option<Vec<Vec4>>,
+    /// Channels of all kept AOVs, pixel by pixel.
+    pub aovs: Vec<f32>,
+    /// (Pixel, surface) pairs shaded.
+    pub shaded: usize,
+}
+
+/// One pixel of a film. Colours are linear and premultiplied by their coverage.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FilmPixel {
+    /// Radiance of lit surfaces and of the environment; to be exposed and tone-mapped.
+    pub lit: Vec3,
+    /// Coverage of lit surfaces and of the environment, 0..=1.
+    pub lit_coverage: f32,
+    /// Colour of unlit surfaces; shown as it is.
+    pub unlit: Vec3,
+    /// Coverage of unlit surfaces, 0..=1.
+    pub unlit_coverage: f32,
+}
+
+impl Film {
+    pub(super) fn new(
+        plan: &Plan,
+        grid: TileGrid,
+        tiles: Vec<FilmTile>,
+        counts: RenderCounts,
+    ) -> Self {
+        Self {
+            width: plan.settings.width,
+            height: plan.settings.height,
+            grid,
+            tiles,
+            aovs: plan.settings.aovs.clone(),
+            background: plan.settings.background,
+            counts,
+        }
+    }
+
+    /// Bytes that the film of a plan takes.
+    pub(crate) fn bytes_for(plan: &Plan) -> u64 {
+        let channels: usize = plan.settings.aovs.iter().map(|a| a.channels().len()).sum();
+        let colours = if plan.has_unlit() { 2 } else { 1 };
+        let pixel = colours * size_of::<Vec4>() + channels * size_of::<f32>();
+        u64::from(plan.settings.width) * u64::from(plan.settings.height) * pixel as u64
+    }
+
+    /// Width in pixels.
+    #[must_use]
+    pub fn width(&self) -> u32 {
+        self.width
+    }
+
+    /// Height in pixels.
+    #[must_use]
+    pub fn height(&self) -> u32 {
+        self.height
+    }
+
+    /// The AOVs that were kept.
+    #[must_use]
+    pub fn aovs(&self) -> &[Aov] {
+        &self.aovs
+    }
+
+    /// What is to be seen where nothing is.
+    #[must_use]
+    pub fn background(&self) -> Background {
+        self.background
+    }
+
+    /// The pixel at (x, y), (0, 0) at the top left.
+    ///
+    /// # Panics
+    /// If the pixel is outside the picture.
+    #[must_use]
+    pub fn pixel(&self, x: u32, y: u32) -> FilmPixel {
+        let (tile, at) = self.place(x, y);
+        let lit = tile.lit[at];
+        let unlit = tile.unlit.as_ref().map_or(Vec4::ZERO, |u| u[at]);
+        FilmPixel {
+            lit: lit.truncate(),
+            lit_coverage: lit.w,
+            unlit: unlit.truncate(),
+            unlit_coverage: unlit.w,
+        }
+    }
+
+    /// The channels of an AOV at (x, y); empty if it was not kept.
+    ///
+    /// # Panics
+    /// If the pixel is outside the picture.
+    #[must_use]
+    pub fn aov(&self, aov: Aov, x: u32, y: u32) -> &[f32] {
+        let mut first = 0;
+        let mut found = None;
+        for &kept in &self.aovs {
+            let length = kept.channels().len();
+            if kept == aov {
+                found = Some((first, length));
+            }
+            first += length;
+        }
+        let Some((start, length)) = found else {
+            return &[];
+        };
+        let (tile, at) = self.place(x, y);
+        &tile.aovs[at * first + start..][..length]
+    }
+
+    /// Whether any pixel shows a surface.
+    #[must_use]
+    pub fn shows_anything(&self) -> bool {
+        self.counts.pixels_shaded > 0
+    }
+
+    /// Tile of a pixel and its index in the tile.
+    fn place(&self, x: u32, y: u32) -> (&FilmTile, usize) {
+        assert!(
+            x < self.width && y < self.height,
+            "pixel ({x}, {y}) is outside a picture of {}x{}",
+            self.width,
+            self.height
+        );
+        let across = self.width.div_ceil(TILE_SIZE);
+        let index = (y / TILE_SIZE * across + x / TILE_SIZE) as usize;
+        let rect = self.grid.rect(index);
+        let inside = UVec2::new(x, y) - rect.min;
+        (
+            &self.tiles[index],
+            (inside.y * rect.size().x + inside.x) as usize,
+        )
+    }
+}

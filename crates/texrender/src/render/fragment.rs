@@ -1,0 +1,207 @@
+//! What the vertices say at a point of an element.
+
+use glam::{DVec3, Mat3, Vec2, Vec3, Vec4};
+use mipmap::Footprint;
+use raster::Facing;
+use sampler::unpremultiply;
+use texcoord::{ScreenCoordinate, Weights};
+
+use crate::plan::{Draw, Kernel, Lighting, LitKernel, Map, Plan, TangentSource, TextureRole, Winding};
+use crate::prepare::Resources;
+use crate::scene::{Primitive, Scene, Topology};
+use normalmap::{TangentFrame, decode_normal};
+
+/// Most sets of texture coordinates whose interpolation is kept; later ones are computed each time.
+const KEPT_SETS: usize = 2;
+
+/// A point of an element, with its vertex attributes at hand.
+pub(super) struct Fragment<'a> {
+    resources: &'a Resources,
+    plan: &'a Plan,
+    pub draw: &'a Draw,
+    pub kernel: &'a Kernel,
+    primitive: &'a Primitive,
+    element: usize,
+    corners: [usize; 3],
+    facing: Facing,
+    weights: Weights,
+    /// Scale of the pixel's footprint.
+    footprint: f32,
+    coordinates: [Option<ScreenCoordinate>; KEPT_SETS],
+}
+
+impl<'a> Fragment<'a> {
+    pub(super) fn new(
+        (scene, plan, resources): (&'a Scene, &'a Plan, &'a Resources),
+        draw: &'a Draw,
+        element: u32,
+        facing: Facing,
+        weights: Weights,
+    ) -> Self {
+        let primitive = &scene.primitives[draw.primitive];
+        let element = element as usize;
+        let indices = primitive.indices[element];
+        let corners = match draw.topology {
+            Topology::Triangles => draw.winding.corners(indices),
+            Topology::Lines | Topology::Points => indices,
+        };
+        Self {
+            resources,
+            plan,
+            draw,
+            kernel: &plan.kernels[draw.kernel],
+            primitive,
+            element,
+            corners: corners.map(|v| v as usize),
+            facing,
+            weights,
+            footprint: 1.0,
+            coordinates: [None; KEPT_SETS],
+        }
+    }
+
+    /// For a point that stands for a part of a pixel: footprints are that much smaller.
+    pub(super) fn with_footprint_scale(self, footprint: f32) -> Self {
+        Self { footprint, ..self }
+    }
+
+    fn at<T: Copy>(&self, attribute: &[T]) -> [T; 3] {
+        self.corners.map(|v| attribute[v])
+    }
+
+    /// Position in the world.
+    pub(super) fn position(&self) -> DVec3 {
+        let local = self
+            .weights
+            .interpolate_vec3(self.at(&self.primitive.positions));
+        self.draw.world.transform_point3(local.as_dvec3())
+    }
+
+    /// Texture coordinates of a set, and how they change over the pixel.
+    pub(super) fn coordinate(&mut self, set: usize) -> Option<ScreenCoordinate> {
+        if let Some(Some(kept)) = self.coordinates.get(set) {
+            return Some(*kept);
+        }
+        let st: [Vec2; 3] = self.at(self.primitive.texcoords.get(set)?);
+        let mut made = self.weights.interpolate_st(st);
+        made.dst_dx *= self.footprint;
+        made.dst_dy *= self.footprint;
+        if let Some(slot) = self.coordinates.get_mut(set) {
+            *slot = Some(made);
+        }
+        Some(made)
+    }
+
+    /// The texture coordinates of a map, transform applied.
+    pub(super) fn map_coordinate(&mut self, map: &Map) -> Option<ScreenCoordinate> {
+        let plain = self.coordinate(map.texcoord)?;
+        Some(match &map.transform {
+            Some(transform) => transform.apply(plain),
+            None => plain,
+        })
+    }
+
+    /// Colour of a map under the pixel, and the level of detail it came from.
+    pub(super) fn sample_with_lod(&mut self, map: &Map) -> (Vec4, f32) {
+        let Some(at) = self.map_coordinate(map) else {
+            return (Vec4::ONE, 0.0);
+        };
+        let footprint = Footprint {
+            st: at.st,
+            dst_dx: at.dst_dx,
+            dst_dy: at.dst_dy,
+        };
+        let pyramid = &self.resources.textures[map.texture];
+        let (texel, lod) = mipmap::sample_with_lod(pyramid, &map.sampler, &footprint);
+        match self.plan.textures[map.texture].role {
+            TextureRole::ColourWithAlpha => (unpremultiply(texel), lod),
+            _ => (texel, lod),
+        }
+    }
+
+    /// Colour of a map under the pixel; white where there is no map.
+    pub(super) fn sample(&mut self, map: Option<&Map>) -> Vec4 {
+        map.map_or(Vec4::ONE, |map| self.sample_with_lod(map).0)
+    }
+
+    /// Base colour and alpha: factor, vertex colour and map; with the map's level of detail.
+    pub(super) fn base_color(&mut self) -> (Vec4, f32) {
+        let kernel = self.kernel;
+        let mut color = kernel.base_color;
+        if let (true, Some(colors)) = (kernel.vertex_colors, &self.primitive.colors) {
+            color *= self.weights.interpolate_vec4(self.at(colors));
+        }
+        match &kernel.base_color_map {
+            Some(map) => {
+                let (texel, lod) = self.sample_with_lod(map);
+                (color * texel, lod)
+            }
+            None => (color, 0.0),
+        }
+    }
+
+    /// Unit shading normal in the world, on the side that is seen.
+    pub(super) fn normal(&mut self) -> Vec3 {
+        let smooth = self.smooth_normal();
+        let bent = match &self.kernel.lighting {
+            Lighting::Lit(LitKernel {
+                normal: Some((map, scale, source)),
+                ..
+            }) => {
+                let frame = self.tangent_frame(smooth, map, *source);
+                let texel = self.sample(Some(map));
+                frame.perturbed(decode_normal(texel.truncate(), *scale))
+            }
+            _ => smooth,
+        };
+        // glTF 2.0, section 3.9.6: seen from behind, the whole tangent frame is reversed.
+        match self.facing {
+            Facing::Front => bent,
+            Facing::Back => -bent,
+        }
+    }
+
+    /// Unit normal of the front side, before any normal map.
+    fn smooth_normal(&self) -> Vec3 {
+        let interpolated = match &self.primitive.normals {
+            Some(normals) => {
+                self.draw.normal_matrix * self.weights.interpolate_vec3(self.at(normals))
+            }
+            None => {
+                let [a, b, c] = self
+                    .at(&self.primitive.positions)
+                    .map(|p| self.draw.world.transform_point3(p.as_dvec3()));
+                (b - a).cross(c - a).normalize_or_zero().as_vec3()
+            }
+        };
+        interpolated.try_normalize().unwrap_or(Vec3::Z)
+    }
+
+    fn tangent_frame(&self, normal: Vec3, map: &Map, source: TangentSource) -> TangentFrame {
+        let tangents: [Vec4; 3] = match (source, &self.primitive.tangents) {
+            (TangentSource::Generated(index), _) => {
+                // Stored for the corners in the file's order.
+                let corners = self.resources.tangents[index][self.element];
+                self.draw.winding.corners(corners)
+            }
+            (TangentSource::File, Some(tangents)) => self.at(tangents),
+            (TangentSource::File, None) => [Vec4::ZERO; 3],
+        };
+        let local = self.weights.interpolate_vec3(tangents.map(Vec4::truncate));
+        let linear = Mat3::from_mat4(self.draw.world.as_mat4());
+        // A mirrored node turns the bitangent that a cross product makes of mirrored axes.
+        let mirrored = match self.draw.winding {
+            Winding::Kept => 1.0,
+            Winding::Reversed => -1.0,
+        };
+        let tangent = (linear * local).normalize_or_zero() * local.length();
+        let frame = TangentFrame::new(normal, tangent, tangents[0].w * mirrored);
+        match (source, &map.transform) {
+            // Generated tangents follow the transformed coordinates already.
+            (TangentSource::File, Some(transform)) => {
+                frame.turned(transform.matrix.matrix2.as_mat2())
+            }
+            _ => frame,
+        }
+    }
+}
