@@ -20,6 +20,10 @@ use crate::settings::Background;
 /// Quality of JPEG files, 1..=100.
 const JPEG_QUALITY: u8 = 92;
 
+/// Row filter of PNG files: of rendered pictures it makes files as small as choosing one for each row
+/// does, in a half to a tenth of the time.
+const PNG_FILTER: FilterType = FilterType::Paeth;
+
 /// A format of picture files.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FileFormat {
@@ -199,7 +203,7 @@ fn write(
     let mut bytes = Cursor::new(Vec::new());
     match format {
         FileFormat::Png => {
-            PngEncoder::new_with_quality(&mut bytes, CompressionType::Fast, FilterType::Adaptive)
+            PngEncoder::new_with_quality(&mut bytes, CompressionType::Fast, PNG_FILTER)
                 .write_image(samples, width, height, kind)
         }
         FileFormat::Jpeg => JpegEncoder::new_with_quality(&mut bytes, JPEG_QUALITY)
