@@ -12,6 +12,7 @@ mod filtering;
 mod glb;
 mod hard_cases;
 mod lighting;
+mod mutations;
 mod needs;
 mod output;
 mod reading;

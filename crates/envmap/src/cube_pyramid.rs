@@ -48,22 +48,44 @@ impl CubePyramid {
 
     /// The value in `direction` at `lod`, linear between levels. `lod` is clamped to the levels; NaN counts as 0.
     #[inline]
+    pub fn radiance(&self, direction: Vec3, lod: f32) -> Vec3 {
+        self.radiance_at(direction, self.place(lod))
+    }
+
+    /// Where a lod lies among the levels.
+    #[inline]
     #[allow(
         clippy::cast_possible_truncation,
         reason = "0 ≤ lod < levels, and truncation is the floor"
     )]
-    pub fn radiance(&self, direction: Vec3, lod: f32) -> Vec3 {
+    pub(crate) fn place(&self, lod: f32) -> LevelPlace {
         let lod = lod.max(0.0).min((self.levels.len() - 1) as f32);
         let fine = lod as u32;
-        let fraction = lod - fine as f32;
+        LevelPlace {
+            fine,
+            fraction: lod - fine as f32,
+        }
+    }
+
+    /// As [`radiance`](Self::radiance), for a lod whose place is known.
+    #[inline]
+    pub(crate) fn radiance_at(&self, direction: Vec3, place: LevelPlace) -> Vec3 {
         // Every level of a cube has the same chart.
         let (face, st) = direction_to_cube(direction);
-        let value = self.level(fine).bilinear(face, st);
-        if fraction == 0.0 {
+        let value = self.level(place.fine).bilinear(face, st);
+        if place.fraction == 0.0 {
             return value;
         }
-        value + (self.level(fine + 1).bilinear(face, st) - value) * fraction
+        let coarser = self.level(place.fine + 1).bilinear(face, st);
+        value + (coarser - value) * place.fraction
     }
+}
+
+/// A level, and how far it is from there to the next coarser one.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct LevelPlace {
+    fine: u32,
+    fraction: f32,
 }
 
 fn halved(cube: &CubeMap) -> CubeMap {

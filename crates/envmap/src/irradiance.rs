@@ -78,19 +78,31 @@ impl Lights {
     fn irradiance(&self, normal: Vec3) -> Vec3 {
         let mut sums = [[0.0f32; LANES]; 4];
         for block in &self.blocks {
-            let [x, y, z] = &block.direction;
-            let cosine: [f32; LANES] = std::array::from_fn(|k| {
-                let dot = x[k] * normal.x + y[k] * normal.y + z[k] * normal.z;
-                if dot > 0.0 { dot } else { 0.0 }
-            });
-            for (sum, power) in sums.iter_mut().zip(&block.power) {
-                for k in 0..LANES {
-                    sum[k] += power[k] * cosine[k];
-                }
-            }
+            sums = block.added(sums, normal);
         }
         let [r, g, b, weight] = sums.map(|lanes| lanes.iter().sum::<f32>());
         Vec3::new(r, g, b) * (core::f32::consts::PI / weight)
+    }
+}
+
+impl Block {
+    /// The sums with this block's texels. By value and in plain loops over lanes: so they stay in vector registers.
+    #[inline(always)]
+    fn added(&self, sums: [[f32; LANES]; 4], normal: Vec3) -> [[f32; LANES]; 4] {
+        let [x, y, z] = &self.direction;
+        let mut cosine = [0.0; LANES];
+        for k in 0..LANES {
+            let dot = x[k] * normal.x + y[k] * normal.y + z[k] * normal.z;
+            cosine[k] = if dot > 0.0 { dot } else { 0.0 };
+        }
+        let [mut r, mut g, mut b, mut weight] = sums;
+        for k in 0..LANES {
+            r[k] += self.power[0][k] * cosine[k];
+            g[k] += self.power[1][k] * cosine[k];
+            b[k] += self.power[2][k] * cosine[k];
+            weight[k] += self.power[3][k] * cosine[k];
+        }
+        [r, g, b, weight]
     }
 }
 

@@ -1,7 +1,7 @@
 use glam::{DVec3, Vec2, Vec3};
 
 use crate::chart::cube::{CubeFace, cube_to_direction};
-use crate::cube_pyramid::CubePyramid;
+use crate::cube_pyramid::{CubePyramid, LevelPlace};
 
 /// Area of the texels that a sample reads over its share of the lobe. At 1 the bilinear tents of neighbouring samples
 /// overlap by half. 4, as Křivánek and Colbert 2008 have it, is smoother by sight but takes 3 to 7 % off the contrast
@@ -58,7 +58,7 @@ pub fn prefilter_face(
 struct LobeSample {
     light: Vec3,
     weight: f64,
-    lod: f32,
+    place: LevelPlace,
 }
 
 fn mirror(source: &CubePyramid, size: u32) -> Vec<LobeSample> {
@@ -66,7 +66,7 @@ fn mirror(source: &CubePyramid, size: u32) -> Vec<LobeSample> {
     vec![LobeSample {
         light: Vec3::Z,
         weight: 1.0,
-        lod,
+        place: source.place(lod),
     }]
 }
 
@@ -94,7 +94,7 @@ fn lobe(source: &CubePyramid, alpha_ggx: f32, samples: u32) -> Vec<LobeSample> {
         lobe.push(LobeSample {
             light,
             weight: f64::from(light.z),
-            lod,
+            place: source.place(lod),
         });
     }
     if lobe.is_empty() {
@@ -110,7 +110,7 @@ fn average(source: &CubePyramid, lobe: &[LobeSample], axis: Vec3) -> Vec3 {
     for sample in lobe {
         let direction =
             tangent * sample.light.x + bitangent * sample.light.y + axis * sample.light.z;
-        sum += source.radiance(direction, sample.lod).as_dvec3() * sample.weight;
+        sum += source.radiance_at(direction, sample.place).as_dvec3() * sample.weight;
         total += sample.weight;
     }
     (sum / total).as_vec3()

@@ -15,6 +15,16 @@ pub struct Footprint {
     pub dst_dy: Vec2,
 }
 
+impl Footprint {
+    /// Whether |size·dst_dx|² + |size·dst_dy|² ≤ 1, which holds the major axis to 1 texel. False for NaN.
+    #[inline]
+    pub(crate) fn is_within_texel(&self, size: UVec2) -> bool {
+        let scale = size.as_dvec2();
+        let [a, b] = [self.dst_dx, self.dst_dy].map(|d| d.as_dvec2() * scale);
+        a.length_squared() + b.length_squared() <= 1.0
+    }
+}
+
 /// The axes of a footprint: a pixel's unit disc of diameter 1, mapped into the texture, is an ellipse.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Axes {

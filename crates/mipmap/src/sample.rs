@@ -102,6 +102,11 @@ pub fn sample_with_lod(
         return (lookup(pyramid, state, state.magnify, 0, footprint.st), 0.0);
     }
 
+    // A texel covers the pixel: η = 1 and λ ≤ 0, whatever the axes.
+    if footprint.is_within_texel(pyramid.size()) {
+        return (lookup(pyramid, state, state.magnify, 0, footprint.st), 0.0);
+    }
+
     // Which levels, and how many probes.
     let axes = AxisLengths::of(pyramid.size(), footprint.dst_dx, footprint.dst_dy);
     let eta = followed_anisotropy(&axes, max_anisotropy);

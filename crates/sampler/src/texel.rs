@@ -40,17 +40,23 @@ impl Tables {
         }
     }
 
+    /// The table of one of `channels` 8-bit channels.
+    #[inline(always)]
+    pub(crate) fn of_channel_u8(&self, channel: usize, channels: usize) -> &'static [f32; 256] {
+        if is_alpha(channel, channels) {
+            self.alpha_u8
+        } else {
+            self.colour_u8
+        }
+    }
+
     pub(crate) fn decode_row_u8<const CHANNELS: usize>(&self, stored: &[u8], row: &mut [f32]) {
         for (out, texel) in row
             .chunks_exact_mut(CHANNELS)
             .zip(stored.chunks_exact(CHANNELS))
         {
             for channel in 0..CHANNELS {
-                let table = if is_alpha(channel, CHANNELS) {
-                    self.alpha_u8
-                } else {
-                    self.colour_u8
-                };
+                let table = self.of_channel_u8(channel, CHANNELS);
                 out[channel] = table[usize::from(texel[channel])];
             }
         }
@@ -97,12 +103,7 @@ pub(crate) fn decode_row_f32_srgb(stored: &[f32], channels: usize, row: &mut [f3
 pub(crate) fn read_u8<const CHANNELS: usize>(stored: &[u8], tables: &Tables, index: usize) -> Vec4 {
     let texel = &stored[index * CHANNELS..][..CHANNELS];
     expand(CHANNELS, |channel| {
-        let table = if is_alpha(channel, CHANNELS) {
-            tables.alpha_u8
-        } else {
-            tables.colour_u8
-        };
-        table[usize::from(texel[channel])]
+        tables.of_channel_u8(channel, CHANNELS)[usize::from(texel[channel])]
     })
 }
 
@@ -134,7 +135,7 @@ pub(crate) fn read_f32(stored: &[f32], transfer: Transfer, channels: usize, inde
 
 /// Grey to all three colours, missing alpha to 1.
 #[inline(always)]
-fn expand(channels: usize, component: impl Fn(usize) -> f32) -> Vec4 {
+pub(crate) fn expand(channels: usize, component: impl Fn(usize) -> f32) -> Vec4 {
     match channels {
         1 => {
             let grey = component(0);

@@ -3,7 +3,7 @@ use glam::{DVec2, DVec4, Vec4};
 use super::BORDER;
 use crate::address::{AddressMode, OUTSIDE, Taps};
 use crate::format::Texels;
-use crate::texel::{read_f32, read_u8, read_u16};
+use crate::texel::{Tables, expand, read_f32, read_u8, read_u16};
 use crate::texture::Texture;
 
 /// Bound of [`bilinear`]'s error, in units in the last place of the largest |texel| among its four.
@@ -48,10 +48,10 @@ pub fn bilinear(texture: &Texture, modes: [AddressMode; 2], st: DVec2) -> Vec4 {
     let tables = texture.tables();
     match texture.texels() {
         Texels::U8(stored) => match texture.channels() {
-            1 => blend(s, t, stride, |index| read_u8::<1>(stored, tables, index)),
-            2 => blend(s, t, stride, |index| read_u8::<2>(stored, tables, index)),
-            3 => blend(s, t, stride, |index| read_u8::<3>(stored, tables, index)),
-            _ => blend(s, t, stride, |index| read_u8::<4>(stored, tables, index)),
+            1 => blend_u8::<1>(s, t, stride, stored, tables),
+            2 => blend_u8::<2>(s, t, stride, stored, tables),
+            3 => blend_u8::<3>(s, t, stride, stored, tables),
+            _ => blend_u8::<4>(s, t, stride, stored, tables),
         },
         Texels::U16(stored) => {
             let channels = usize::from(texture.channels());
@@ -67,6 +67,36 @@ pub fn bilinear(texture: &Texture, modes: [AddressMode; 2], st: DVec2) -> Vec4 {
             })
         }
     }
+}
+
+/// As [`blend`], channel by channel: what all texels share (grey in three channels, alpha 1) is blended once or not.
+#[inline(always)]
+fn blend_u8<const CHANNELS: usize>(
+    s: Taps,
+    t: Taps,
+    stride: usize,
+    stored: &[u8],
+    tables: &Tables,
+) -> Vec4 {
+    if s.reads_border() || t.reads_border() {
+        return blend(s, t, stride, |index| {
+            read_u8::<CHANNELS>(stored, tables, index)
+        });
+    }
+    let [alpha, beta] = [weight_f32(s.far_weight), weight_f32(t.far_weight)];
+    let texel = |i: u32, j: u32| {
+        let first = (j as usize * stride + i as usize) * CHANNELS;
+        &stored[first..first + CHANNELS]
+    };
+    let (top_near, top_far) = (texel(s.near, t.near), texel(s.far, t.near));
+    let (low_near, low_far) = (texel(s.near, t.far), texel(s.far, t.far));
+    expand(CHANNELS, |channel| {
+        let table = tables.of_channel_u8(channel, CHANNELS);
+        let value = |texel: &[u8]| table[usize::from(texel[channel])];
+        let top = value(top_near) + (value(top_far) - value(top_near)) * alpha;
+        let low = value(low_near) + (value(low_far) - value(low_near)) * alpha;
+        top + (low - top) * beta
+    })
 }
 
 /// Blends in f32: enough for integer texels, whose values are already rounded to 2⁻¹⁶ or coarser.

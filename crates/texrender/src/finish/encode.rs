@@ -20,6 +20,10 @@ use crate::settings::Background;
 /// Quality of JPEG files, 1..=100.
 const JPEG_QUALITY: u8 = 92;
 
+/// Row filter of PNG files: of rendered pictures it makes files as small as choosing one for each row
+/// does, in a half to a tenth of the time.
+const PNG_FILTER: FilterType = FilterType::Paeth;
+
 /// A format of picture files.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FileFormat {
@@ -105,15 +109,29 @@ pub(super) fn encode(
 
 fn encode_hdr(film: &Film, options: &FinishOptions) -> Result<Vec<u8>, String> {
     let gain = gain(options);
-    let pixels: Vec<Rgb<f32>> = rows(film, |x, y, out| {
+    let pixels = rows(film, 1, Rgb([0.0; 3]), |x, y, out| {
         let (color, _) = developed(film, x, y, gain, ToneMap::None);
-        out.push(Rgb(color.to_array()));
+        out[0] = Rgb(within_shared_exponent(color).to_array());
     });
     let mut bytes = Vec::new();
     HdrEncoder::new(&mut bytes)
         .encode(&pixels, film.width() as usize, film.height() as usize)
         .map_err(|e| e.to_string())?;
     Ok(bytes)
+}
+
+/// What a shared exponent of 8 bits can hold: 0 for what is too small, the greatest for what is too
+/// large; the encoder's exponent would wrap round. NaN becomes 0.
+fn within_shared_exponent(color: Vec3) -> Vec3 {
+    const LEAST: f32 = f32::MIN_POSITIVE;
+    const GREATEST: f32 = f32::MAX * 0.499;
+    // Not `clamp`, which keeps NaN.
+    let held = color.max(Vec3::ZERO).min(Vec3::splat(GREATEST));
+    if held.max_element() < LEAST {
+        Vec3::ZERO
+    } else {
+        held
+    }
 }
 
 /// Encoded display samples, straight alpha, row by row.
@@ -125,35 +143,42 @@ fn display<const BYTES: usize>(
 ) -> Vec<u8> {
     let gain = gain(options);
     let transparent = film.background() == Background::Transparent;
-    rows(film, |x, y, out| {
+    let channels = if transparent { 4 } else { 3 };
+    rows(film, channels * BYTES, 0, |x, y, out| {
         let (color, alpha) = developed(film, x, y, gain, options.tonemap);
         let straight = if transparent && alpha > 0.0 {
             color / alpha
         } else {
             color
         };
-        for c in straight.to_array() {
-            out.extend(color_code(c));
+        let (slots, _) = out.as_chunks_mut::<BYTES>();
+        for (slot, c) in slots.iter_mut().zip(straight.to_array()) {
+            *slot = color_code(c);
         }
         if transparent {
-            out.extend(alpha_code(alpha));
+            slots[3] = alpha_code(alpha);
         }
     })
 }
 
-/// Values of all pixels, row by row, made in parallel.
-pub(super) fn rows<T: Send>(film: &Film, pixel: impl Fn(u32, u32, &mut Vec<T>) + Sync) -> Vec<T> {
-    let rows: Vec<Vec<T>> = (0..film.height())
-        .into_par_iter()
-        .map(|y| {
-            let mut row = Vec::new();
-            for x in 0..film.width() {
-                pixel(x, y, &mut row);
+/// `count` values of each pixel, row by row, made in parallel. `pixel` writes them over `empty`.
+pub(super) fn rows<T: Copy + Send + Sync>(
+    film: &Film,
+    count: usize,
+    empty: T,
+    pixel: impl Fn(u32, u32, &mut [T]) + Sync,
+) -> Vec<T> {
+    let (width, height) = (film.width() as usize, film.height() as usize);
+    let mut values = vec![empty; width * height * count];
+    values
+        .par_chunks_exact_mut(width * count)
+        .zip(0u32..film.height())
+        .for_each(|(row, y)| {
+            for (x, out) in (0u32..).zip(row.chunks_exact_mut(count)) {
+                pixel(x, y, out);
             }
-            row
-        })
-        .collect();
-    rows.into_iter().flatten().collect()
+        });
+    values
 }
 
 /// The bytes of an 8-bit RGB picture whose channels are given in 0..=1, as they are to be stored.
@@ -162,8 +187,8 @@ pub(super) fn encode_rgb8(
     format: FileFormat,
     pixel: impl Fn(u32, u32) -> Vec3 + Sync,
 ) -> Result<Vec<u8>, String> {
-    let samples = rows(film, |x, y, out| {
-        out.extend(pixel(x, y).to_array().map(encode_unorm_u8));
+    let samples = rows(film, 3, 0, |x, y, out| {
+        out.copy_from_slice(&pixel(x, y).to_array().map(encode_unorm_u8));
     });
     let size = (film.width(), film.height());
     write(&samples, size, ExtendedColorType::Rgb8, format)
@@ -178,7 +203,7 @@ fn write(
     let mut bytes = Cursor::new(Vec::new());
     match format {
         FileFormat::Png => {
-            PngEncoder::new_with_quality(&mut bytes, CompressionType::Fast, FilterType::Adaptive)
+            PngEncoder::new_with_quality(&mut bytes, CompressionType::Fast, PNG_FILTER)
                 .write_image(samples, width, height, kind)
         }
         FileFormat::Jpeg => JpegEncoder::new_with_quality(&mut bytes, JPEG_QUALITY)

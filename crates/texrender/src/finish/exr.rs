@@ -24,9 +24,9 @@ pub(super) fn encode(
     } else {
         &["R", "G", "B"]
     };
-    let pixels: Vec<[f32; 4]> = rows(film, |x, y, out| {
+    let pixels = rows(film, 1, [0.0; 4], |x, y, out| {
         let (color, alpha) = developed(film, x, y, gain, ToneMap::None);
-        out.push(color.extend(alpha).to_array());
+        out[0] = color.extend(alpha).to_array();
     });
     let mut channels: Vec<AnyChannel<FlatSamples>> = names
         .iter()
@@ -57,7 +57,7 @@ fn aov_channels(film: &Film, aov: Aov, prefix: &str) -> Vec<AnyChannel<FlatSampl
         .iter()
         .enumerate()
         .map(|(i, name)| {
-            let values = rows(film, |x, y, out| out.push(film.aov(aov, x, y)[i]));
+            let values = rows(film, 1, 0.0, |x, y, out| out[0] = film.aov(aov, x, y)[i]);
             channel(&format!("{prefix}{name}"), values)
         })
         .collect()

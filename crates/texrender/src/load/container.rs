@@ -32,6 +32,7 @@ pub(super) fn open(path: &Path) -> Result<Container, Error> {
     let mut root: Root =
         json::deserialize::from_slice(&text).map_err(|error| json_error(path, &error))?;
     repair_samplers(&mut root, &mut warnings);
+    repair_images(&mut root, &mut warnings);
     Ok(Container {
         root,
         blob,
@@ -106,6 +107,18 @@ fn repair_samplers(root: &mut Root, warnings: &mut Vec<String>) {
     }
 }
 
+/// A kind that is not said can be seen from an image's first bytes; the parser insists on one.
+fn repair_images(root: &mut Root, warnings: &mut Vec<String>) {
+    for (i, image) in root.images.iter_mut().enumerate() {
+        if image.buffer_view.is_some() && image.mime_type.is_none() {
+            image.mime_type = Some(json::image::MimeType(String::new()));
+            warnings.push(format!(
+                "images[{i}]: no mimeType beside its bufferView; told from its bytes"
+            ));
+        }
+    }
+}
+
 /// The document, once every reference in it is known to resolve.
 pub(super) fn validated(
     path: &Path,
@@ -115,6 +128,7 @@ pub(super) fn validated(
     // Ours to judge, and judged by now: the parser knows fewer extensions than the reader.
     root.extensions_required.clear();
     check_positions(path, &root)?;
+    check_images(path, &root)?;
     let mut defects = Vec::new();
     root.validate(&root, json::Path::new, &mut |place, defect| {
         defects.push((place().to_string(), defect));
@@ -168,4 +182,17 @@ fn check_positions(path: &Path, root: &Root) -> Result<(), Error> {
         }
     }
     Ok(())
+}
+
+/// Nor does it ask that an image has a source.
+fn check_images(path: &Path, root: &Root) -> Result<(), Error> {
+    let bare = |image: &json::Image| image.uri.is_none() && image.buffer_view.is_none();
+    match root.images.iter().position(bare) {
+        None => Ok(()),
+        Some(i) => Err(Error::scene(
+            path,
+            format!("images[{i}]"),
+            "has neither a uri nor a bufferView; give it one",
+        )),
+    }
 }

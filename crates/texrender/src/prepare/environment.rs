@@ -1,10 +1,10 @@
 //! Light from afar, as tables that shading reads.
 
 use envmap::{
-    CubeFace, CubeMap, CubePyramid, IrradianceTable, LatLong, SpecularTable, irradiance_face,
-    prefilter_face, resample_latlong_face, studio,
+    CubeFace, CubeMap, CubePyramid, IrradianceTable, LatLong, SpecularTable, cube_to_direction,
+    irradiance_face, prefilter_face, resample_latlong_face, studio, studio_radiance,
 };
-use glam::{Mat3, Vec3};
+use glam::{Mat3, UVec2, Vec3};
 use rayon::prelude::*;
 use sampler::{Texture, Transfer};
 
@@ -14,19 +14,20 @@ use crate::plan::{EnvironmentNeed, Plan};
 use crate::scene::{ImageData, ImageSource};
 use crate::settings::EnvironmentSource;
 
-/// Width of the computed studio, texels.
+/// Width of the computed studio as it is seen behind everything, texels.
 const STUDIO_WIDTH: u32 = 512;
-/// Texels along an edge of the cube that blurring starts from.
-const SOURCE_SIZE: u32 = 256;
+/// Texels along an edge of the studio's cube: its sharpest edge, 0.1 wide, spans eight of them.
+const STUDIO_SIZE: u32 = 128;
+/// Most texels along an edge of the cube that blurring starts from.
+const MAX_SOURCE_SIZE: u32 = 256;
 /// Texels along an edge of the irradiance cube: the cosine lobe has no finer detail.
 const IRRADIANCE_SIZE: u32 = 16;
-/// Samples of the blurring lobe a texel.
-const PREFILTER_SAMPLES: u32 = 32;
 
 /// An environment, ready to be looked up.
 #[derive(Debug)]
 pub struct Environment {
-    latlong: LatLong,
+    /// What is seen behind everything, if anything is.
+    latlong: Option<LatLong>,
     tables: Option<(IrradianceTable, SpecularTable)>,
     /// From the world to the map.
     rotation: Mat3,
@@ -51,12 +52,14 @@ impl Environment {
         })
     }
 
-    /// Radiance seen in a unit direction by a pixel whose neighbours look `dx` and `dy` further.
+    /// Radiance seen in a unit direction by a pixel whose neighbours look `dx` and `dy` further; 0 if
+    /// the environment is not seen.
     #[must_use]
     pub fn seen(&self, direction: Vec3, dx: Vec3, dy: Vec3) -> Vec3 {
         let turn = |v: Vec3| self.rotation * v;
-        self.latlong
-            .radiance_filtered(turn(direction), turn(dx), turn(dy))
+        self.latlong.as_ref().map_or(Vec3::ZERO, |latlong| {
+            latlong.radiance_filtered(turn(direction), turn(dx), turn(dy))
+        })
     }
 
     /// Number of irradiance and blurred maps.
@@ -68,19 +71,18 @@ impl Environment {
 
 /// Makes what the need lists.
 pub(super) fn prepare(need: &EnvironmentNeed, plan: &Plan) -> Result<Environment, Error> {
-    let latlong = match &need.source {
-        EnvironmentSource::File(path) => read(path, plan.settings.max_memory)?,
-        EnvironmentSource::Studio | EnvironmentSource::None => studio(STUDIO_WIDTH),
+    let file = match &need.source {
+        EnvironmentSource::File(path) => Some(read(path, plan.settings.max_memory)?),
+        EnvironmentSource::Studio | EnvironmentSource::None => None,
     };
     let tables = need
         .lights_surfaces
-        .then(|| tables(&latlong, &need.roughness_levels))
+        .then(|| tables(&source(file.as_ref()), &need.roughness_levels))
         .transpose()?;
-    let latlong = if need.background {
+    let latlong = need.background.then(|| {
+        let latlong = file.unwrap_or_else(|| studio(STUDIO_WIDTH));
         latlong.with_levels()
-    } else {
-        latlong
-    };
+    });
     let angle = plan.settings.environment_rotation.to_radians();
     let (sin, cos) = (libm::sinf(angle), libm::cosf(angle));
     Ok(Environment {
@@ -96,30 +98,54 @@ pub(super) fn prepare(need: &EnvironmentNeed, plan: &Plan) -> Result<Environment
     })
 }
 
+/// The cube that blurring starts from, as fine as a picture lets it be; of the studio without one.
+fn source(file: Option<&LatLong>) -> CubePyramid {
+    let (size, made) = match file {
+        Some(latlong) => {
+            // A quarter of the way round is one face.
+            let size = (latlong.size().x / 4).clamp(1, MAX_SOURCE_SIZE);
+            let face = |face| resample_latlong_face(latlong, size, face);
+            (size, faces(face))
+        }
+        None => (STUDIO_SIZE, faces(|face| studio_face(STUDIO_SIZE, face))),
+    };
+    let cube = CubeMap::from_faces(size, made).expect("faces of the size they were made in");
+    CubePyramid::build(cube)
+}
+
+/// The studio is smooth: its value at a texel's centre stands for the texel.
+fn studio_face(size: u32, face: CubeFace) -> Vec<Vec3> {
+    (0..size)
+        .flat_map(|j| (0..size).map(move |i| UVec2::new(i, j)))
+        .map(|ij| studio_radiance(cube_to_direction(face, (ij.as_vec2() + 0.5) / size as f32)))
+        .collect()
+}
+
 fn tables(
-    latlong: &LatLong,
+    source: &CubePyramid,
     roughness_levels: &[f32],
 ) -> Result<(IrradianceTable, SpecularTable), Error> {
     let error = |error: envmap::Error| Error::Image {
         name: "environment".to_owned(),
         detail: error.to_string(),
     };
-    let source = faces(|face| resample_latlong_face(latlong, SOURCE_SIZE, face));
-    let pyramid = CubePyramid::build(CubeMap::from_faces(SOURCE_SIZE, source).map_err(error)?);
-    let irradiance = faces(|face| irradiance_face(&pyramid, IRRADIANCE_SIZE, face));
-    let levels = roughness_levels
-        .iter()
-        .map(|&roughness| {
-            let (size, alpha) = (blurred_size(roughness), roughness * roughness);
-            let blurred =
-                faces(|face| prefilter_face(&pyramid, alpha, size, face, PREFILTER_SAMPLES));
-            Ok((roughness, CubeMap::from_faces(size, blurred)?))
-        })
-        .collect::<Result<Vec<_>, _>>()
-        .map_err(error)?;
+    let (irradiance, levels) = rayon::join(
+        || faces(|face| irradiance_face(source, IRRADIANCE_SIZE, face)),
+        || {
+            roughness_levels
+                .par_iter()
+                .map(|&roughness| {
+                    let Blur { size, samples } = Blur::of(roughness);
+                    let (size, alpha) = (size.min(source.size()), roughness * roughness);
+                    let blurred = faces(|face| prefilter_face(source, alpha, size, face, samples));
+                    Ok((roughness, CubeMap::from_faces(size, blurred)?))
+                })
+                .collect::<Result<Vec<_>, _>>()
+        },
+    );
     Ok((
         IrradianceTable::from_faces(IRRADIANCE_SIZE, irradiance).map_err(error)?,
-        SpecularTable::from_levels(levels).map_err(error)?,
+        SpecularTable::from_levels(levels.map_err(error)?).map_err(error)?,
     ))
 }
 
@@ -132,14 +158,28 @@ fn faces(face: impl Fn(CubeFace) -> Vec<Vec3> + Sync) -> [Vec<Vec3>; 6] {
     made
 }
 
-/// Texels along an edge that hold an environment blurred to a roughness: a texel stays well below
-/// the lobe's width of about α radians.
-fn blurred_size(roughness: f32) -> u32 {
-    match roughness {
-        r if r < 0.1 => SOURCE_SIZE,
-        r if r < 0.2 => 128,
-        r if r < 0.3 => 64,
-        _ => 32,
+/// How an environment blurred to a roughness is made and held.
+struct Blur {
+    /// Texels along an edge.
+    size: u32,
+    /// Samples of the lobe a texel.
+    samples: u32,
+}
+
+impl Blur {
+    /// A lobe is about 2.6·α radians wide at half its height (GGX in half vectors: tan θ = 0.64·α; light
+    /// turns by twice that, to either side). Texels are at most 0.4 of it, so that interpolation between
+    /// them does not widen it by much; a narrow lobe needs few samples, for each stands for a texel of
+    /// the source or less.
+    fn of(roughness: f32) -> Self {
+        let (size, samples) = match roughness {
+            r if r < 0.1 => (MAX_SOURCE_SIZE, 1),
+            r if r < 0.2 => (96, 16),
+            r if r < 0.3 => (64, 32),
+            r if r < 0.5 => (32, 32),
+            _ => (16, 32),
+        };
+        Self { size, samples }
     }
 }
 

@@ -55,12 +55,20 @@ pub struct PrepareCounts {
 /// [`Error`] for an image that does not decode, or an environment that is not a picture.
 pub fn prepare(scene: &Scene, plan: &Plan) -> Result<Resources, Error> {
     // Images and the environment take longest: they go first and share the cores.
-    let (textures, environment) = rayon::join(
+    let need = plan.environment.as_ref();
+    let (textures, (environment, reflectance)) = rayon::join(
         || textures(scene, plan),
         || {
-            let need = plan.environment.as_ref();
-            need.map(|need| environment::prepare(need, plan))
-                .transpose()
+            rayon::join(
+                || {
+                    need.map(|need| environment::prepare(need, plan))
+                        .transpose()
+                },
+                || {
+                    need.filter(|need| need.lights_surfaces)
+                        .map(|_| ReflectanceTable::new())
+                },
+            )
         },
     );
     let (textures, environment) = (textures?, environment?);
@@ -77,11 +85,6 @@ pub fn prepare(scene: &Scene, plan: &Plan) -> Result<Resources, Error> {
         tangent_fallbacks: generated.iter().map(|t| t.fallbacks).sum(),
         environment_tables_built: environment.as_ref().map_or(0, Environment::tables),
     };
-    let reflectance = plan
-        .environment
-        .as_ref()
-        .filter(|need| need.lights_surfaces)
-        .map(|_| ReflectanceTable::new());
     Ok(Resources {
         textures,
         tangents: generated.into_iter().map(|t| t.corners).collect(),

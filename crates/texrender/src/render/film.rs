@@ -1,9 +1,10 @@
 //! The picture before it is finished: linear, per pixel, tile by tile.
 
-use glam::{UVec2, Vec3, Vec4};
-use raster::{TILE_SIZE, TileGrid};
+use glam::{Vec3, Vec4};
+use raster::TILE_SIZE;
 
 use super::RenderCounts;
+use super::shade::Values;
 use crate::plan::Plan;
 use crate::settings::{Aov, Background};
 
@@ -12,7 +13,6 @@ use crate::settings::{Aov, Background};
 pub struct Film {
     width: u32,
     height: u32,
-    grid: TileGrid,
     tiles: Vec<FilmTile>,
     aovs: Vec<Aov>,
     background: Background,
@@ -33,6 +33,28 @@ pub(super) struct FilmTile {
     pub shaded: usize,
 }
 
+impl FilmTile {
+    /// Appends the values that a pixel keeps beside its colour.
+    pub(super) fn push_aovs(&mut self, aovs: &[Aov], values: Values) {
+        let Values {
+            depth,
+            normal: Vec3 { x, y, z },
+            st,
+            mip_level,
+            surface_id,
+        } = values;
+        for aov in aovs {
+            match aov {
+                Aov::Depth => self.aovs.push(depth),
+                Aov::Normal => self.aovs.extend([x, y, z]),
+                Aov::TextureCoordinate => self.aovs.extend([st.x, st.y]),
+                Aov::MipLevel => self.aovs.push(mip_level),
+                Aov::SurfaceId => self.aovs.push(surface_id),
+            }
+        }
+    }
+}
+
 /// One pixel of a film. Colours are linear and premultiplied by their coverage.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FilmPixel {
@@ -47,16 +69,10 @@ pub struct FilmPixel {
 }
 
 impl Film {
-    pub(super) fn new(
-        plan: &Plan,
-        grid: TileGrid,
-        tiles: Vec<FilmTile>,
-        counts: RenderCounts,
-    ) -> Self {
+    pub(super) fn new(plan: &Plan, tiles: Vec<FilmTile>, counts: RenderCounts) -> Self {
         Self {
             width: plan.settings.width,
             height: plan.settings.height,
-            grid,
             tiles,
             aovs: plan.settings.aovs.clone(),
             background: plan.settings.background,
@@ -150,12 +166,12 @@ impl Film {
             self.height
         );
         let across = self.width.div_ceil(TILE_SIZE);
-        let index = (y / TILE_SIZE * across + x / TILE_SIZE) as usize;
-        let rect = self.grid.rect(index);
-        let inside = UVec2::new(x, y) - rect.min;
+        let (column, row) = (x / TILE_SIZE, y / TILE_SIZE);
+        // The last column may be narrower.
+        let width = TILE_SIZE.min(self.width - column * TILE_SIZE);
         (
-            &self.tiles[index],
-            (inside.y * rect.size().x + inside.x) as usize,
+            &self.tiles[(row * across + column) as usize],
+            (y % TILE_SIZE * width + x % TILE_SIZE) as usize,
         )
     }
 }

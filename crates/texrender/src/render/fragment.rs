@@ -14,6 +14,27 @@ use normalmap::{TangentFrame, curvature_variance, decode_normal, filtered_varian
 /// Most sets of texture coordinates whose interpolation is kept; later ones are computed each time.
 const KEPT_SETS: usize = 2;
 
+/// What all fragments of a frame read.
+pub(super) struct Frame<'a> {
+    pub scene: &'a Scene,
+    pub plan: &'a Plan,
+    pub resources: &'a Resources,
+    /// From each draw's space to the world, without its translation.
+    linear: Vec<Mat3>,
+}
+
+impl<'a> Frame<'a> {
+    pub(super) fn new(scene: &'a Scene, plan: &'a Plan, resources: &'a Resources) -> Self {
+        let linear = |draw: &Draw| Mat3::from_mat4(draw.world.as_mat4());
+        Self {
+            scene,
+            plan,
+            resources,
+            linear: plan.draws.iter().map(linear).collect(),
+        }
+    }
+}
+
 /// A normal, and the variance of slopes about it under the pixel.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct ShadingNormal {
@@ -25,6 +46,7 @@ pub(super) struct ShadingNormal {
 pub(super) struct Fragment<'a> {
     resources: &'a Resources,
     plan: &'a Plan,
+    linear: &'a Mat3,
     pub draw: &'a Draw,
     pub kernel: &'a Kernel,
     primitive: &'a Primitive,
@@ -35,17 +57,21 @@ pub(super) struct Fragment<'a> {
     /// Scale of the pixel's footprint.
     footprint: f32,
     coordinates: [Option<ScreenCoordinate>; KEPT_SETS],
+    normal: Option<ShadingNormal>,
 }
 
 impl<'a> Fragment<'a> {
+    /// `draw`: index into the plan's draws. `element`: index into its primitive's.
     pub(super) fn new(
-        (scene, plan, resources): (&'a Scene, &'a Plan, &'a Resources),
-        draw: &'a Draw,
+        frame: &'a Frame,
+        draw: usize,
         element: u32,
         facing: Facing,
         weights: Weights,
     ) -> Self {
-        let primitive = &scene.primitives[draw.primitive];
+        let (plan, linear) = (frame.plan, &frame.linear[draw]);
+        let draw = &plan.draws[draw];
+        let primitive = &frame.scene.primitives[draw.primitive];
         let element = element as usize;
         let indices = primitive.indices[element];
         let corners = match draw.topology {
@@ -53,8 +79,9 @@ impl<'a> Fragment<'a> {
             Topology::Lines | Topology::Points => indices,
         };
         Self {
-            resources,
+            resources: frame.resources,
             plan,
+            linear,
             draw,
             kernel: &plan.kernels[draw.kernel],
             primitive,
@@ -64,6 +91,7 @@ impl<'a> Fragment<'a> {
             weights,
             footprint: 1.0,
             coordinates: [None; KEPT_SETS],
+            normal: None,
         }
     }
 
@@ -150,6 +178,15 @@ impl<'a> Fragment<'a> {
     /// Unit shading normal in the world on the side that is seen, and how much the normals under the
     /// pixel differ from it.
     pub(super) fn normal(&mut self) -> ShadingNormal {
+        if let Some(kept) = self.normal {
+            return kept;
+        }
+        let made = self.shading_normal();
+        self.normal = Some(made);
+        made
+    }
+
+    fn shading_normal(&mut self) -> ShadingNormal {
         let smooth = self.smooth_normal();
         let map = match &self.kernel.lighting {
             Lighting::Lit(lit) => lit.normal.as_ref(),
@@ -218,13 +255,12 @@ impl<'a> Fragment<'a> {
             (TangentSource::File, None) => [Vec4::ZERO; 3],
         };
         let local = self.weights.interpolate_vec3(tangents.map(Vec4::truncate));
-        let linear = Mat3::from_mat4(self.draw.world.as_mat4());
         // A mirrored node turns the bitangent that a cross product makes of mirrored axes.
         let mirrored = match self.draw.winding {
             Winding::Kept => 1.0,
             Winding::Reversed => -1.0,
         };
-        let tangent = (linear * local).normalize_or_zero() * local.length();
+        let tangent = (*self.linear * local).normalize_or_zero() * local.length();
         let frame = TangentFrame::new(normal, tangent, tangents[0].w * mirrored);
         match (source, &map.transform) {
             // Generated tangents follow the transformed coordinates already.

@@ -69,7 +69,6 @@ pub fn render(
     };
     Film::new(
         plan,
-        geometry.grid,
         tiles.into_iter().map(|(_, tile)| tile).collect(),
         counts,
     )

@@ -2,23 +2,25 @@
 
 use std::sync::atomic::{AtomicU64, Ordering};
 
-use glam::{DVec2, UVec2, Vec3, Vec4};
+use glam::{DVec2, UVec2, Vec4};
 use raster::{Rect, SamplePattern, VisibilityTile};
 
 use super::film::FilmTile;
-use super::fragment::Fragment;
+use super::fragment::{Fragment, Frame};
 use super::geometry::Geometry;
 use super::shade::{Shaded, Values, alpha, shade};
 use crate::plan::{Coverage, Plan};
 use crate::prepare::Resources;
 use crate::scene::Scene;
-use crate::settings::{Aov, Background};
+use crate::settings::Background;
 
 /// What a worker keeps from tile to tile.
 pub(super) struct TileScratch {
     visibility: VisibilityTile,
     blended: Vec<BlendedPixel>,
     layers: Vec<Layer>,
+    /// Depth and index of the layers over one sample.
+    order: Vec<(f32, usize)>,
     surfaces: Vec<(u32, u64)>,
 }
 
@@ -51,6 +53,7 @@ impl TileScratch {
             visibility: VisibilityTile::new(pattern),
             blended: Vec::new(),
             layers: Vec::new(),
+            order: Vec::new(),
             surfaces: Vec::new(),
         }
     }
@@ -58,9 +61,7 @@ impl TileScratch {
 
 /// Renders tiles of one frame.
 pub(super) struct TileRenderer<'a> {
-    scene: &'a Scene,
-    plan: &'a Plan,
-    resources: &'a Resources,
+    frame: Frame<'a>,
     geometry: &'a Geometry,
     keeps_unlit: bool,
     /// A bit for each element that owns a sample.
@@ -76,9 +77,7 @@ impl<'a> TileRenderer<'a> {
     ) -> Self {
         let words = geometry.elements.div_ceil(64);
         Self {
-            scene,
-            plan,
-            resources,
+            frame: Frame::new(scene, plan, resources),
             geometry,
             keeps_unlit: plan.has_unlit(),
             visible: (0..words).map(|_| AtomicU64::new(0)).collect(),
@@ -150,8 +149,9 @@ impl<'a> TileRenderer<'a> {
     /// its share of the pixel's footprint.
     fn alpha_test(&self, t: u32, pixel: UVec2, mask: u64) -> u64 {
         let triangle = &self.geometry.triangles[t as usize];
-        let draw = &self.plan.draws[self.geometry.draw_of[t as usize] as usize];
-        let Coverage::Mask { cutoff } = self.plan.kernels[draw.kernel].coverage else {
+        let plan = self.frame.plan;
+        let draw = self.geometry.draw_of[t as usize] as usize;
+        let Coverage::Mask { cutoff } = plan.kernels[plan.draws[draw].kernel].coverage else {
             return mask;
         };
         let positions = self.geometry.pattern.positions();
@@ -162,14 +162,9 @@ impl<'a> TileRenderer<'a> {
                 continue;
             }
             let weights = triangle.weights(pixel, point);
-            let mut fragment = Fragment::new(
-                (self.scene, self.plan, self.resources),
-                draw,
-                triangle.source(),
-                triangle.facing(),
-                weights,
-            )
-            .with_footprint_scale(footprint);
+            let (element, facing) = (triangle.source(), triangle.facing());
+            let mut fragment = Fragment::new(&self.frame, draw, element, facing, weights)
+                .with_footprint_scale(footprint);
             kept |= u64::from(alpha(&mut fragment) >= cutoff) << sample;
         }
         kept
@@ -189,10 +184,17 @@ impl<'a> TileRenderer<'a> {
             .visibility
             .surfaces(pixel, |t, mask| surfaces.push((t, mask)));
         let covered = surfaces.iter().fold(0, |all, (_, mask)| all | mask);
-        let background = if covered != full || !over.is_empty() {
-            self.background(pixel)
-        } else {
+        if let (&[(t, mask)], true, []) = (surfaces.as_slice(), covered == full, over) {
+            // One opaque surface over all samples, as nearly everywhere.
+            let shaded = self.shade(t, pixel, mask, film);
+            film.push(shaded.light());
+            film.push_aovs(&self.frame.plan.settings.aovs, shaded.values);
+            return;
+        }
+        let background = if covered == full {
             Light::default()
+        } else {
+            self.background(pixel)
         };
 
         let most = surfaces
@@ -223,7 +225,7 @@ impl<'a> TileRenderer<'a> {
                 }
             }
             self.lay_over(pixel, over, scratch, film);
-            sum = self.composite(pixel, &mut base, &scratch.layers);
+            sum = self.composite(pixel, &mut base, &scratch.layers, &mut scratch.order);
             let nearest = || {
                 let depth = |layer: &Layer| layer.shaded.values.depth;
                 let visible = scratch.layers.iter().filter(|l| l.shaded.alpha > 0.0);
@@ -232,7 +234,10 @@ impl<'a> TileRenderer<'a> {
             values = values.or_else(|| nearest().map(|layer| layer.shaded.values));
         }
         film.push(sum);
-        film.push_aovs(&self.plan.settings.aovs, values.unwrap_or(Values::NOTHING));
+        film.push_aovs(
+            &self.frame.plan.settings.aovs,
+            values.unwrap_or(Values::NOTHING),
+        );
     }
 
     /// Shades the blended surfaces of a pixel into `scratch.layers`.
@@ -257,10 +262,15 @@ impl<'a> TileRenderer<'a> {
     }
 
     /// Lays the layers over each sample, farthest first, and averages the samples.
-    fn composite(&self, pixel: UVec2, base: &mut [Light], layers: &[Layer]) -> Light {
+    fn composite(
+        &self,
+        pixel: UVec2,
+        base: &mut [Light],
+        layers: &[Layer],
+        order: &mut Vec<(f32, usize)>,
+    ) -> Light {
         let positions = self.geometry.pattern.positions();
         let mut sum = Light::default();
-        let mut order: Vec<(f32, usize)> = Vec::with_capacity(layers.len());
         for (sample, (&point, light)) in positions.iter().zip(base).enumerate() {
             order.clear();
             order.extend(
@@ -276,7 +286,7 @@ impl<'a> TileRenderer<'a> {
             // Reversed depth: the smallest is the farthest. Stable, so that of equal depths the last
             // submitted lies on top.
             order.sort_by(|a, b| a.0.total_cmp(&b.0));
-            for &(_, i) in &order {
+            for &(_, i) in order.iter() {
                 light.cover(&layers[i].shaded);
             }
             sum.add(*light, 1.0 / positions.len() as f32);
@@ -289,33 +299,38 @@ impl<'a> TileRenderer<'a> {
         let triangle = &geometry.triangles[t as usize];
         let d = geometry.draw_of[t as usize] as usize;
         let element = geometry.first_element[d] + triangle.source() as usize;
-        self.visible[element / 64].fetch_or(1 << (element % 64), Ordering::Relaxed);
+        self.mark_visible(element);
         film.shaded += 1;
         let weights = triangle.weights_at_samples(pixel, mask, &geometry.pattern);
-        let mut fragment = Fragment::new(
-            (self.scene, self.plan, self.resources),
-            &self.plan.draws[d],
-            triangle.source(),
-            triangle.facing(),
-            weights,
-        );
-        shade(self.plan, self.resources, &mut fragment)
+        let (element, facing) = (triangle.source(), triangle.facing());
+        let mut fragment = Fragment::new(&self.frame, d, element, facing, weights);
+        shade(self.frame.plan, self.frame.resources, &mut fragment)
+    }
+
+    /// Most elements own many pixels: only the first writes what all threads share.
+    fn mark_visible(&self, element: usize) {
+        let (word, bit) = (&self.visible[element / 64], 1 << (element % 64));
+        if word.load(Ordering::Relaxed) & bit == 0 {
+            word.fetch_or(bit, Ordering::Relaxed);
+        }
     }
 
     /// What is behind everything in a pixel, as far as the film holds it.
     fn background(&self, pixel: UVec2) -> Light {
-        let environment = self.resources.environment.as_ref();
-        match (self.plan.settings.background, environment) {
+        let Frame {
+            plan, resources, ..
+        } = &self.frame;
+        match (plan.settings.background, resources.environment.as_ref()) {
             (Background::Environment, Some(environment)) => {
                 let size = DVec2::new(
-                    f64::from(self.plan.settings.width),
-                    f64::from(self.plan.settings.height),
+                    f64::from(plan.settings.width),
+                    f64::from(plan.settings.height),
                 );
                 let aspect = size.x / size.y;
                 let ray = |x: f64, y: f64| {
                     let at = (pixel.as_dvec2() + DVec2::new(0.5 + x, 0.5 + y)) / size;
                     let ndc = DVec2::new(2.0 * at.x - 1.0, 1.0 - 2.0 * at.y);
-                    self.plan.viewpoint.ray(ndc, aspect).normalize().as_vec3()
+                    plan.viewpoint.ray(ndc, aspect).normalize().as_vec3()
                 };
                 let direction = ray(0.0, 0.0);
                 let (dx, dy) = (ray(1.0, 0.0) - direction, ray(0.0, 1.0) - direction);
@@ -367,25 +382,6 @@ impl FilmTile {
         self.lit.push(light.lit);
         if let Some(unlit) = &mut self.unlit {
             unlit.push(light.unlit);
-        }
-    }
-
-    fn push_aovs(&mut self, aovs: &[Aov], values: Values) {
-        let Values {
-            depth,
-            normal: Vec3 { x, y, z },
-            st,
-            mip_level,
-            surface_id,
-        } = values;
-        for aov in aovs {
-            match aov {
-                Aov::Depth => self.aovs.push(depth),
-                Aov::Normal => self.aovs.extend([x, y, z]),
-                Aov::TextureCoordinate => self.aovs.extend([st.x, st.y]),
-                Aov::MipLevel => self.aovs.push(mip_level),
-                Aov::SurfaceId => self.aovs.push(surface_id),
-            }
         }
     }
 }

@@ -1,0 +1,16 @@
+//! The speed of a frame and of its stages, and of each texture filter beside its error.
+//!
+//! `cargo bench -p texrender-rs`, with `TEXRENDER_ASSETS` naming the folder of shared models for
+//! more than the showcase; `cargo bench -p texrender-rs -- mipmap` for the filters alone.
+#![allow(
+    missing_docs,
+    reason = "criterion's macros make public functions without documentation"
+)]
+
+mod filters;
+mod stages;
+
+use criterion::{criterion_group, criterion_main};
+
+criterion_group!(benches, stages::bench, filters::bench);
+criterion_main!(benches);
