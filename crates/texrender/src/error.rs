@@ -69,7 +69,9 @@ pub enum Error {
         detail: String,
     },
     /// Something would need more memory than allowed.
-    #[error("{what} needs {needed} MiB and the limit leaves {available} MiB; raise it (--max-memory) or make it smaller")]
+    #[error(
+        "{what} needs {needed} MiB and the limit leaves {available} MiB; raise it (--max-memory) or make it smaller"
+    )]
     Memory {
         /// What was about to be made.
         what: String,

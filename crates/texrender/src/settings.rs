@@ -246,8 +246,7 @@ impl Settings {
                 detail: "it must be a finite angle in degrees".to_owned(),
             });
         }
-        if self.background == Background::Environment
-            && self.environment == EnvironmentSource::None
+        if self.background == Background::Environment && self.environment == EnvironmentSource::None
         {
             return Err(Error::Setting {
                 setting: "--background",
@@ -267,7 +266,10 @@ impl View {
             Self::Default | Self::Camera(_) => DEFAULT_FOV_Y_DEGREES,
         };
         if !(fov > 0.0 && fov < 180.0) {
-            return error("--fov", format!("{fov} degrees; it must lie between 0 and 180"));
+            return error(
+                "--fov",
+                format!("{fov} degrees; it must lie between 0 and 180"),
+            );
         }
         match self {
             Self::LookAt { eye, target, .. } => {

@@ -66,5 +66,9 @@ fn id_color(id: f32) -> Vec3 {
         let x = id * step;
         0.25 + 0.75 * (x - x.floor())
     };
-    Vec3::new(channel(0.618_034), channel(0.754_877_7), channel(0.569_840_3))
+    Vec3::new(
+        channel(0.618_034),
+        channel(0.754_877_7),
+        channel(0.569_840_3),
+    )
 }

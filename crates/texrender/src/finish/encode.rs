@@ -78,15 +78,25 @@ pub(super) fn encode(
     let (samples, kind) = match (format, options.bit_depth) {
         (FileFormat::Hdr, _) => return encode_hdr(film, options),
         (FileFormat::Png, BitDepth::Sixteen) => (
-            display(film, options, |c| encode_srgb_u16(c).to_ne_bytes(), |a| {
-                encode_unorm_u16(a).to_ne_bytes()
-            }),
-            if transparent { Kind::Rgba16 } else { Kind::Rgb16 },
+            display(
+                film,
+                options,
+                |c| encode_srgb_u16(c).to_ne_bytes(),
+                |a| encode_unorm_u16(a).to_ne_bytes(),
+            ),
+            if transparent {
+                Kind::Rgba16
+            } else {
+                Kind::Rgb16
+            },
         ),
         _ => (
-            display(film, options, |c| [encode_srgb_u8(c)], |a| {
-                [encode_unorm_u8(a)]
-            }),
+            display(
+                film,
+                options,
+                |c| [encode_srgb_u8(c)],
+                |a| [encode_unorm_u8(a)],
+            ),
             if transparent { Kind::Rgba8 } else { Kind::Rgb8 },
         ),
     };

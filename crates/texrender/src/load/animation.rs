@@ -63,7 +63,11 @@ fn chosen<'a>(file: &'a File) -> Result<Option<gltf::Animation<'a>>, Error> {
         return Ok(animations.next());
     };
     let index: Option<usize> = wanted.parse().ok();
-    let names: Vec<&str> = file.document.animations().filter_map(|a| a.name()).collect();
+    let names: Vec<&str> = file
+        .document
+        .animations()
+        .filter_map(|a| a.name())
+        .collect();
     animations
         .find(|a| a.name() == Some(wanted) || Some(a.index()) == index)
         .map(Some)
@@ -173,7 +177,8 @@ impl<T> Keys<'_, T> {
             Interpolation::Step => plain(span.after),
             Interpolation::Linear => plain(span.before) * (1.0 - t) + plain(span.after) * t,
             Interpolation::CubicSpline => {
-                let part = |key: usize, part: usize| get(&self.values[(key * 3 + part) * n + offset]);
+                let part =
+                    |key: usize, part: usize| get(&self.values[(key * 3 + part) * n + offset]);
                 let (t2, t3) = (t * t, t * t * t);
                 (2.0 * t3 - 3.0 * t2 + 1.0) * part(span.before, 1)
                     + span.seconds * (t3 - 2.0 * t2 + t) * part(span.before, 2)

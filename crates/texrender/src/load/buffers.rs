@@ -44,11 +44,7 @@ impl Buffers {
             return Err(Error::scene(
                 &self.path,
                 format!("buffers[{}]", buffer.index()),
-                format!(
-                    "promises {} bytes and has {}",
-                    buffer.length(),
-                    bytes.len()
-                ),
+                format!("promises {} bytes and has {}", buffer.length(), bytes.len()),
             ));
         }
         Ok(cell.get_or_init(|| bytes))

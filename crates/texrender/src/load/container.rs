@@ -121,8 +121,8 @@ pub(super) fn validated(
     });
     // Bounds of positions are for the reader's convenience; ours computes them.
     defects.retain(|(place, defect)| {
-        let bounds = *defect == Defect::Missing
-            && (place.ends_with(".min") || place.ends_with(".max"));
+        let bounds =
+            *defect == Defect::Missing && (place.ends_with(".min") || place.ends_with(".max"));
         let empty = *defect == Defect::Missing && place.ends_with("attributes[\"POSITION\"]");
         if empty {
             warnings.push(format!("{place} is missing: the primitive is not drawn"));

@@ -28,7 +28,9 @@ pub(super) fn check(path: &Path, root: &Root, warnings: &mut Vec<String>) -> Res
         });
     }
     for name in root.extensions_used.iter().filter(unsupported) {
-        warnings.push(format!("extension {name} is not supported; drawn without it"));
+        warnings.push(format!(
+            "extension {name} is not supported; drawn without it"
+        ));
     }
     Ok(())
 }

@@ -54,7 +54,10 @@ pub(super) fn material(file: &File, source: &GltfMaterial) -> Result<Material, E
     };
     if let Some(factor) = non_finite(&material) {
         let index = source.index().unwrap_or_default();
-        return Err(file.error(format!("materials[{index}]"), format!("{factor} is not finite")));
+        return Err(file.error(
+            format!("materials[{index}]"),
+            format!("{factor} is not finite"),
+        ));
     }
     Ok(material)
 }

@@ -150,11 +150,7 @@ pub(super) fn add_to_scene(
     }
     if let Some(camera) = node.camera() {
         scene.cameras.push(Camera {
-            name: camera
-                .name()
-                .or(node.name())
-                .unwrap_or_default()
-                .to_owned(),
+            name: camera.name().or(node.name()).unwrap_or_default().to_owned(),
             world,
             projection: projection(file, &camera)?,
         });

@@ -92,7 +92,8 @@ pub(super) fn skin(
         };
         let indices = accessor::read_u32::<4>(file, &indices)?;
         let weights: Vec<[f32; 4]> = attribute(file, place, "WEIGHTS", &weights, vertices)?;
-        for (vertex, (indices, weights)) in indices.iter().zip(&weights).enumerate().take(vertices) {
+        for (vertex, (indices, weights)) in indices.iter().zip(&weights).enumerate().take(vertices)
+        {
             for (&joint, &weight) in indices.iter().zip(weights) {
                 if weight == 0.0 {
                     continue;

@@ -45,10 +45,13 @@ pub(super) fn read(
         _ => None,
     };
     let mut texcoords = Vec::new();
-    while let Some(a) = source.get(&Semantic::TexCoords(texcoords.len().try_into().unwrap_or(u32::MAX)))
-    {
+    while let Some(a) = source.get(&Semantic::TexCoords(
+        texcoords.len().try_into().unwrap_or(u32::MAX),
+    )) {
         let name = format!("TEXCOORD_{}", texcoords.len());
-        texcoords.push(vectors::<Vec2, 2>(attribute(file, place, &name, &a, count)?));
+        texcoords.push(vectors::<Vec2, 2>(attribute(
+            file, place, &name, &a, count,
+        )?));
     }
     let colors = source
         .get(&Semantic::Colors(0))
@@ -136,10 +139,7 @@ fn elements(
     let line = |a: u32, b: u32| [a, b, b];
     let pairs = || order.windows(2).map(|w| line(w[0], w[1]));
     Ok(match source.mode() {
-        Mode::Points => (
-            Topology::Points,
-            order.iter().map(|&a| [a, a, a]).collect(),
-        ),
+        Mode::Points => (Topology::Points, order.iter().map(|&a| [a, a, a]).collect()),
         Mode::Lines => (
             Topology::Lines,
             order.chunks_exact(2).map(|c| line(c[0], c[1])).collect(),
@@ -154,10 +154,7 @@ fn elements(
         }
         Mode::Triangles => (
             Topology::Triangles,
-            order
-                .chunks_exact(3)
-                .map(|c| [c[0], c[1], c[2]])
-                .collect(),
+            order.chunks_exact(3).map(|c| [c[0], c[1], c[2]]).collect(),
         ),
         // glTF 2.0, section 3.7.2.1: p_i = {v_i, v_(i+1+i%2), v_(i+2−i%2)}.
         Mode::TriangleStrip => (

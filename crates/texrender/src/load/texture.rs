@@ -28,7 +28,8 @@ fn image_source(file: &File, image: &gltf::Image) -> Result<ImageSource, Error> 
     match image.source() {
         Source::View { view, .. } => {
             let bytes = file.buffers.view(&view)?;
-            let buffer: &std::sync::Arc<Vec<u8>> = buffers::Buffers::get(&file.buffers, &view.buffer())?;
+            let buffer: &std::sync::Arc<Vec<u8>> =
+                buffers::Buffers::get(&file.buffers, &view.buffer())?;
             Ok(ImageSource {
                 name: name(None),
                 data: ImageData::Memory {

@@ -7,9 +7,7 @@ use texcoord::AffineTransform;
 
 use super::texture::{PyramidNeed, TextureNeed, TextureRole};
 use super::{Plan, TangentNeed};
-use crate::scene::{
-    AlphaMode, Material, MaterialModel, Primitive, Scene, TextureUse, Topology,
-};
+use crate::scene::{AlphaMode, Material, MaterialModel, Primitive, Scene, TextureUse, Topology};
 use crate::settings::FilterChoice;
 
 /// How the surface of a primitive is shaded: its factors, and the maps that change them.
@@ -230,12 +228,7 @@ impl<'a> KernelBuilder<'a> {
                     map: self.map_if(varies, map, TextureRole::Data, "metallic and roughness"),
                     ior,
                     specular,
-                    specular_map: self.map_if(
-                        layered,
-                        specular_map,
-                        TextureRole::Data,
-                        "specular",
-                    ),
+                    specular_map: self.map_if(layered, specular_map, TextureRole::Data, "specular"),
                     specular_color,
                     specular_color_map: self.map_if(
                         layered,
@@ -317,7 +310,13 @@ impl<'a> KernelBuilder<'a> {
         };
         let reason = format!("{purpose} of '{}'", self.material.name);
         Some(Map {
-            texture: TextureNeed::list(&mut self.plan.textures, texture.image, role, pyramid, reason),
+            texture: TextureNeed::list(
+                &mut self.plan.textures,
+                texture.image,
+                role,
+                pyramid,
+                reason,
+            ),
             sampler,
             texcoord: source.texcoord,
             transform: (!source.transform.is_identity()).then(|| source.transform.affine()),

@@ -229,10 +229,5 @@ fn fitting_eye(scene: &Scene, axes: DMat3, half: DVec2, radius: f64) -> DVec3 {
     let z = ((edges[0] + edges[1]) / (2.0 * half.x))
         .max((edges[2] + edges[3]) / (2.0 * half.y))
         .max(front + 0.1 * radius);
-    DVec3::new(
-        0.5 * (edges[0] - edges[1]),
-        0.5 * (edges[2] - edges[3]),
-        z,
-    )
+    DVec3::new(0.5 * (edges[0] - edges[1]), 0.5 * (edges[2] - edges[3]), z)
 }
-

@@ -14,9 +14,8 @@ pub(super) fn add_draws(scene: &Scene, plan: &mut Plan) {
     let bounds: Vec<Option<Bounds>> = scene.primitives.iter().map(|p| p.bounds()).collect();
     for (index, instance) in scene.instances.iter().enumerate() {
         let primitive = &scene.primitives[instance.primitive];
-        let seen = bounds[instance.primitive].is_some_and(|bounds| {
-            in_view(&bounds, plan.viewpoint.world_to_clip * instance.world)
-        });
+        let seen = bounds[instance.primitive]
+            .is_some_and(|bounds| in_view(&bounds, plan.viewpoint.world_to_clip * instance.world));
         if !seen || primitive.indices.is_empty() {
             plan.culled_instances += 1;
             continue;
@@ -44,11 +43,12 @@ pub(super) fn add_draws(scene: &Scene, plan: &mut Plan) {
         });
     }
     let kernels = &plan.kernels;
-    plan.draws.sort_by_key(|draw| match kernels[draw.kernel].coverage {
-        Coverage::Opaque => 0,
-        Coverage::Mask { .. } => 1,
-        Coverage::Blend => 2,
-    });
+    plan.draws
+        .sort_by_key(|draw| match kernels[draw.kernel].coverage {
+            Coverage::Opaque => 0,
+            Coverage::Mask { .. } => 1,
+            Coverage::Blend => 2,
+        });
 }
 
 /// The inverse transpose, up to a positive factor: the cofactors, with the determinant's sign.

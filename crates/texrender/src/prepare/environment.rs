@@ -92,11 +92,7 @@ pub(super) fn prepare(need: &EnvironmentNeed, plan: &Plan) -> Result<Environment
         },
         tables,
         // The inverse of a turn about Y by the angle.
-        rotation: Mat3::from_cols(
-            Vec3::new(cos, 0.0, sin),
-            Vec3::Y,
-            Vec3::new(-sin, 0.0, cos),
-        ),
+        rotation: Mat3::from_cols(Vec3::new(cos, 0.0, sin), Vec3::Y, Vec3::new(-sin, 0.0, cos)),
     })
 }
 

@@ -128,11 +128,7 @@ fn textures(scene: &Scene, plan: &Plan) -> Result<Vec<Pyramid>, Error> {
 }
 
 /// A decoded image as the texture that a need describes.
-fn pyramid(
-    need: &TextureNeed,
-    picture: image::DynamicImage,
-    name: &str,
-) -> Result<Pyramid, Error> {
+fn pyramid(need: &TextureNeed, picture: image::DynamicImage, name: &str) -> Result<Pyramid, Error> {
     let texture = |picture, transfer| {
         Texture::from_image(picture, transfer).map_err(|error| Error::Image {
             name: name.to_owned(),

@@ -6,7 +6,9 @@ use raster::Facing;
 use sampler::unpremultiply;
 use texcoord::{ScreenCoordinate, Weights};
 
-use crate::plan::{Draw, Kernel, Lighting, LitKernel, Map, Plan, TangentSource, TextureRole, Winding};
+use crate::plan::{
+    Draw, Kernel, Lighting, LitKernel, Map, Plan, TangentSource, TextureRole, Winding,
+};
 use crate::prepare::Resources;
 use crate::scene::{Primitive, Scene, Topology};
 use normalmap::{TangentFrame, decode_normal};

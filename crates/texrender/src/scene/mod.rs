@@ -17,7 +17,9 @@ use shading::PunctualLight;
 pub use camera::{Camera, Projection};
 pub use geometry::{Bounds, Primitive, Topology};
 pub use image::{ImageData, ImageSource, Texture};
-pub use material::{AlphaMode, Material, MaterialModel, NormalTexture, OcclusionTexture, TextureUse};
+pub use material::{
+    AlphaMode, Material, MaterialModel, NormalTexture, OcclusionTexture, TextureUse,
+};
 
 /// A scene as its author wrote it.
 #[derive(Clone, Debug, Default)]

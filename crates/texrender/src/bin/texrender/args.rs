@@ -93,7 +93,12 @@ pub(crate) struct PictureArgs {
     #[arg(long, value_name = "FILE|studio|none", default_value = "studio", value_parser = values::environment)]
     pub env: EnvironmentSource,
     /// Turn of the environment about the vertical.
-    #[arg(long, value_name = "DEGREES", default_value_t = 0.0, allow_negative_numbers = true)]
+    #[arg(
+        long,
+        value_name = "DEGREES",
+        default_value_t = 0.0,
+        allow_negative_numbers = true
+    )]
     pub env_rotation: f32,
     /// What is behind the scene: #rrggbb, transparent, or the environment.
     #[arg(long, value_name = "COLOR|transparent|env", default_value = "#333333", value_parser = values::background)]

@@ -15,7 +15,9 @@ impl Progress {
     pub(crate) fn new() -> Self {
         let bar = ProgressBar::with_draw_target(Some(STEPS), ProgressDrawTarget::stderr());
         // The template is a constant that parses.
-        if let Ok(style) = ProgressStyle::with_template("{msg:10} {wide_bar} {percent:>3}% {elapsed}") {
+        if let Ok(style) =
+            ProgressStyle::with_template("{msg:10} {wide_bar} {percent:>3}% {elapsed}")
+        {
             bar.set_style(style);
         }
         Self { bar }

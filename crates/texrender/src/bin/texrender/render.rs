@@ -62,7 +62,12 @@ impl Outputs {
             check_folder(path)?;
             // A picture holds one AOV, as if it were its colour.
             let beside = if aovs.len() > 1 { aovs.as_slice() } else { &[] };
-            check_holds(path, texrender::Background::default(), args.bit_depth, beside)?;
+            check_holds(
+                path,
+                texrender::Background::default(),
+                args.bit_depth,
+                beside,
+            )?;
         }
         if let Some(stats) = args.stats.as_deref().filter(|p| *p != Path::new("-")) {
             check_folder(stats)?;
