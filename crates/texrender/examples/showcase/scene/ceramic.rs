@@ -60,7 +60,9 @@ pub(super) fn limb_color(size: UVec2) -> Vec<u8> {
 
 /// Occlusion, roughness, metal of spout and handle.
 pub(super) fn limb_surface(size: UVec2) -> Vec<u8> {
-    rgb(size, |st| surface(st, limb(st), 1.0 - 0.45 * step(0.3, 0.0, st.y)))
+    rgb(size, |st| {
+        surface(st, limb(st), 1.0 - 0.45 * step(0.3, 0.0, st.y))
+    })
 }
 
 fn color(st: Vec2, paint: Paint) -> Vec3 {
@@ -86,7 +88,14 @@ fn vessel(st: Vec2) -> Paint {
     let x = st.x * AROUND + wobble;
     let y = (1.0 - st.y) * HEIGHT + wobble;
     let mut paint = Paint::default();
-    for (height, half) in [(1.2, 0.022), (1.27, 0.009), (2.42, 0.01), (2.48, 0.02), (2.76, 0.02), (3.42, 0.02)] {
+    for (height, half) in [
+        (1.2, 0.022),
+        (1.27, 0.009),
+        (2.42, 0.01),
+        (2.48, 0.02),
+        (2.76, 0.02),
+        (3.42, 0.02),
+    ] {
         paint.cobalt(0.95 * band(y, height, half, 0.02));
     }
     paint.cobalt(petals(x, (y - 0.62) / 0.5, 14.0));
@@ -177,7 +186,9 @@ fn blossom(p: Vec2, turn: f32, paint: &mut Paint) {
     let heart = step(inner, inner - 0.02, radius);
     paint.cobalt *= 1.0 - heart;
     paint.cobalt(band(radius, inner, 0.014, 0.02));
-    paint.coral = paint.coral.max(heart * (0.55 + 0.45 * step(0.02, 0.2, radius)));
+    paint.coral = paint
+        .coral
+        .max(heart * (0.55 + 0.45 * step(0.02, 0.2, radius)));
     paint.gold = paint.gold.max(step(0.085, 0.07, radius));
 }
 

@@ -37,8 +37,18 @@ fn plain(document: &mut Document, name: &str, [r, g, b]: [f64; 3], roughness: f6
 
 fn planter(document: &mut Document, stone: usize, stem: usize) {
     let size = UVec2::splat(512);
-    let color = document.texture("brick colour", &materials::brick_color(size), REPEAT, Magnify::Linear);
-    let normal = document.texture("brick normal", &materials::brick_normal(size), REPEAT, Magnify::Linear);
+    let color = document.texture(
+        "brick colour",
+        &materials::brick_color(size),
+        REPEAT,
+        Magnify::Linear,
+    );
+    let normal = document.texture(
+        "brick normal",
+        &materials::brick_normal(size),
+        REPEAT,
+        Magnify::Linear,
+    );
     let brick = document.material(
         "brick",
         json!({
@@ -63,12 +73,30 @@ fn planter(document: &mut Document, stone: usize, stem: usize) {
         Vec3::new(half.x + 0.04, 0.03, half.y + 0.04),
         1.0,
     );
-    let mut screen = Mesh::quad(Vec3::new(0.0, height + 0.93, -0.06), Vec3::X * 0.82, Vec3::Y * 0.90);
+    let mut screen = Mesh::quad(
+        Vec3::new(0.0, height + 0.93, -0.06),
+        Vec3::X * 0.82,
+        Vec3::Y * 0.90,
+    );
     for uv in &mut screen.uv {
         *uv *= Vec2::new(0.82, 0.90) * 3.2;
     }
-    let (stems, leaves) = ivy(height);
-    let parts = [(&body, brick), (&cap, stone), (&screen, trellis), (&stems, stem), (&leaves, leaf)];
+    let (mut stems, leaves) = ivy(height);
+    for side in [-0.84, 0.84] {
+        let post = Vec3::new(side, height + 0.96, -0.06);
+        stems.add(&Mesh::block(post, Vec3::new(0.03, 0.96, 0.03), 1.0));
+    }
+    for y in [0.08, 1.83] {
+        let rail = Vec3::new(0.0, height + y, -0.06);
+        stems.add(&Mesh::block(rail, Vec3::new(0.84, 0.025, 0.025), 1.0));
+    }
+    let parts = [
+        (&body, brick),
+        (&cap, stone),
+        (&screen, trellis),
+        (&stems, stem),
+        (&leaves, leaf),
+    ];
     let mesh = document.mesh("planter", &parts);
     document.node(
         "planter",
@@ -111,7 +139,11 @@ fn ivy(foot: f32) -> (Mesh, Mesh) {
             let r = |seed| random(vine, k, seed);
             let at = path[(k as f32 / count as f32 * 23.0) as usize];
             let side = if k % 2 == 0 { 1.0 } else { -1.0 };
-            let offset = Vec3::new(side * (0.03 + 0.09 * r(311)), 0.05 * (r(312) - 0.5), 0.02 + 0.06 * r(313));
+            let offset = Vec3::new(
+                side * (0.03 + 0.09 * r(311)),
+                0.05 * (r(312) - 0.5),
+                0.02 + 0.06 * r(313),
+            );
             let hang = side * (0.3 + 1.1 * r(314));
             let size = (0.12 + 0.10 * r(315)) * (1.0 - 0.35 * k as f32 / count as f32);
             leaves.add(&leaf(at + offset, hang, r(316) - 0.3, size));
@@ -120,7 +152,11 @@ fn ivy(foot: f32) -> (Mesh, Mesh) {
     // Over the edge of the box.
     for k in 0..26 {
         let r = |seed| random(k, 9, seed);
-        let at = Vec3::new(-0.8 + 1.6 * r(321), foot + 0.07 - 0.13 * r(322), 0.24 + 0.06 * r(323));
+        let at = Vec3::new(
+            -0.8 + 1.6 * r(321),
+            foot + 0.07 - 0.13 * r(322),
+            0.24 + 0.06 * r(323),
+        );
         leaves.add(&leaf(at, 1.6 * (r(324) - 0.5), 0.5, 0.14 + 0.07 * r(325)));
     }
     (stems, leaves)
@@ -167,21 +203,52 @@ fn a_crate(document: &mut Document) {
     for a in [-1.0, 1.0] {
         for b in [-1.0, 1.0] {
             let (at, long, thin) = (half - 0.04, half - 0.08, 0.04);
-            frame.add(&Mesh::block(middle + Vec3::new(a * at, b * at, 0.0), Vec3::new(thin, thin, long), 1.0));
-            frame.add(&Mesh::block(middle + Vec3::new(a * at, 0.0, b * at), Vec3::new(thin, long, thin), 1.0));
-            frame.add(&Mesh::block(middle + Vec3::new(0.0, a * at, b * at), Vec3::new(long, thin, thin), 1.0));
+            frame.add(&Mesh::block(
+                middle + Vec3::new(a * at, b * at, 0.0),
+                Vec3::new(thin, thin, long),
+                1.0,
+            ));
+            frame.add(&Mesh::block(
+                middle + Vec3::new(a * at, 0.0, b * at),
+                Vec3::new(thin, long, thin),
+                1.0,
+            ));
+            frame.add(&Mesh::block(
+                middle + Vec3::new(0.0, a * at, b * at),
+                Vec3::new(long, thin, thin),
+                1.0,
+            ));
             for c in [-1.0, 1.0] {
                 let corner = Vec3::new(a, b, c) * (half - 0.042);
-                corners.add(&Mesh::block(middle + corner + Vec3::Y * 0.004, Vec3::splat(0.046), 1.0));
+                corners.add(&Mesh::block(
+                    middle + corner + Vec3::Y * 0.004,
+                    Vec3::splat(0.046),
+                    1.0,
+                ));
             }
         }
     }
     let (out, side) = (half - 0.022, half - 0.08);
     let mut pictures = Mesh::default();
-    for (right, up) in [(Vec3::X, Vec3::Y), (Vec3::NEG_X, Vec3::Y), (Vec3::NEG_Z, Vec3::Y), (Vec3::Z, Vec3::Y), (Vec3::X, Vec3::NEG_Z)] {
-        pictures.add(&Mesh::quad(middle + right.cross(up) * out, right * side, up * side));
+    for (right, up) in [
+        (Vec3::X, Vec3::Y),
+        (Vec3::NEG_X, Vec3::Y),
+        (Vec3::NEG_Z, Vec3::Y),
+        (Vec3::Z, Vec3::Y),
+        (Vec3::X, Vec3::NEG_Z),
+    ] {
+        pictures.add(&Mesh::quad(
+            middle + right.cross(up) * out,
+            right * side,
+            up * side,
+        ));
     }
-    let parts = [(&core, boards), (&frame, boards), (&corners, brass), (&pictures, panel)];
+    let parts = [
+        (&core, boards),
+        (&frame, boards),
+        (&corners, brass),
+        (&pictures, panel),
+    ];
     let mesh = document.mesh("crate", &parts);
     document.node(
         "crate",
@@ -196,13 +263,18 @@ fn lantern(document: &mut Document, iron: usize) {
     // A post that bends into a hook over the lantern.
     let reach = 0.5 * (LANTERN_POST.x - LANTERN.x);
     let top = 2.42;
-    let mut path: Vec<Vec3> = (0..6).map(|k| LANTERN_POST + Vec3::Y * (top * k as f32 / 5.0)).collect();
+    let mut path: Vec<Vec3> = (0..6)
+        .map(|k| LANTERN_POST + Vec3::Y * (top * k as f32 / 5.0))
+        .collect();
     for k in 1..=20 {
         let (sin, cos) = sin_cos(PI * k as f32 / 20.0);
         path.push(LANTERN_POST + Vec3::new(reach * (cos - 1.0), top + 0.30 * sin, 0.0));
     }
     let mut post = Mesh::tube(&path, 0.022, 12);
-    let chain = [Vec3::new(LANTERN.x, top, LANTERN.z), Vec3::new(LANTERN.x, LANTERN.y + 0.26, LANTERN.z)];
+    let chain = [
+        Vec3::new(LANTERN.x, top, LANTERN.z),
+        Vec3::new(LANTERN.x, LANTERN.y + 0.26, LANTERN.z),
+    ];
     post.add(&Mesh::tube(&chain, 0.008, 8));
     // A scroll in the bend.
     let scroll: Vec<Vec3> = (0..40)
@@ -215,7 +287,16 @@ fn lantern(document: &mut Document, iron: usize) {
         .collect();
     post.add(&Mesh::tube(&scroll, 0.012, 8));
     let foot = Mesh::turned(
-        &[&[[0.22, 0.0], [0.22, 0.03]], &[[0.22, 0.03], [0.19, 0.045], [0.07, 0.07], [0.03, 0.13], [0.022, 0.2]]],
+        &[
+            &[[0.22, 0.0], [0.22, 0.03]],
+            &[
+                [0.22, 0.03],
+                [0.19, 0.045],
+                [0.07, 0.07],
+                [0.03, 0.13],
+                [0.022, 0.2],
+            ],
+        ],
         32,
         Vec2::ONE,
     );
@@ -232,11 +313,25 @@ fn lantern(document: &mut Document, iron: usize) {
             },
             "emissiveTexture": { "index": paper },
             "emissiveFactor": [1.0, 0.62, 0.30],
-            "extensions": { "KHR_materials_emissive_strength": { "emissiveStrength": 1.5 } },
+            "extensions": { "KHR_materials_emissive_strength": { "emissiveStrength": 1.8 } },
         }),
     );
-    let mut caps = Mesh::turned(&[&[[0.10, 0.225], [0.12, 0.225], [0.12, 0.26]], &[[0.12, 0.26], [0.02, 0.285]]], 32, Vec2::ONE);
-    caps.add(&Mesh::turned(&[&[[0.0, -0.27], [0.10, -0.27]], &[[0.10, -0.27], [0.10, -0.225]]], 32, Vec2::ONE));
+    let mut caps = Mesh::turned(
+        &[
+            &[[0.10, 0.225], [0.12, 0.225], [0.12, 0.26]],
+            &[[0.12, 0.26], [0.02, 0.285]],
+        ],
+        32,
+        Vec2::ONE,
+    );
+    caps.add(&Mesh::turned(
+        &[
+            &[[0.0, -0.27], [0.10, -0.27]],
+            &[[0.10, -0.27], [0.10, -0.225]],
+        ],
+        32,
+        Vec2::ONE,
+    ));
     let post_mesh = document.mesh("post", &[(&post, iron)]);
     document.node("post", json!({ "mesh": post_mesh }));
     let mut globe = Mesh::sphere(Vec3::ZERO, 1.0, 64, 32);
@@ -247,13 +342,26 @@ fn lantern(document: &mut Document, iron: usize) {
         json!({ "mesh": mesh, "translation": LANTERN.to_array(), "scale": [0.31, 0.25, 0.31] }),
     );
     let mesh = document.mesh("caps", &[(&caps, iron)]);
-    document.node("caps", json!({ "mesh": mesh, "translation": LANTERN.to_array() }));
+    document.node(
+        "caps",
+        json!({ "mesh": mesh, "translation": LANTERN.to_array() }),
+    );
 }
 
 fn panes(document: &mut Document, stone: usize) {
     let palettes = [
-        [[0.16, 0.50, 0.62], [0.30, 0.70, 0.72], [0.20, 0.36, 0.66], [0.60, 0.82, 0.78]],
-        [[0.92, 0.50, 0.16], [0.86, 0.28, 0.20], [0.96, 0.74, 0.30], [0.70, 0.20, 0.34]],
+        [
+            [0.16, 0.50, 0.62],
+            [0.30, 0.70, 0.72],
+            [0.20, 0.36, 0.66],
+            [0.60, 0.82, 0.78],
+        ],
+        [
+            [0.92, 0.50, 0.16],
+            [0.86, 0.28, 0.20],
+            [0.96, 0.74, 0.30],
+            [0.70, 0.20, 0.34],
+        ],
     ];
     for (k, (pane, palette)) in PANES.iter().zip(palettes).enumerate() {
         let name = ["cool pane", "warm pane"][k];
@@ -270,8 +378,16 @@ fn panes(document: &mut Document, stone: usize) {
             }),
         );
         let half = 0.5 * pane.height - 0.04;
-        let sheet = Mesh::quad(Vec3::Y * (half + 0.08), Vec3::X * pane.half.x, Vec3::Y * half);
-        let sill = Mesh::block(Vec3::Y * 0.04, Vec3::new(pane.half.x + 0.03, 0.04, 0.05), 1.0);
+        let sheet = Mesh::quad(
+            Vec3::Y * (half + 0.08),
+            Vec3::X * pane.half.x,
+            Vec3::Y * half,
+        );
+        let sill = Mesh::block(
+            Vec3::Y * 0.04,
+            Vec3::new(pane.half.x + 0.03, 0.04, 0.05),
+            1.0,
+        );
         let mesh = document.mesh(name, &[(&sill, stone), (&sheet, material)]);
         document.node(
             name,
@@ -285,8 +401,18 @@ fn panes(document: &mut Document, stone: usize) {
 
 fn topiaries(document: &mut Document, stem: usize) {
     let size = UVec2::splat(256);
-    let color = document.texture("foliage colour", &materials::foliage(size), REPEAT, Magnify::Linear);
-    let normal = document.texture("foliage normal", &materials::foliage_normal(size), REPEAT, Magnify::Linear);
+    let color = document.texture(
+        "foliage colour",
+        &materials::foliage(size),
+        REPEAT,
+        Magnify::Linear,
+    );
+    let normal = document.texture(
+        "foliage normal",
+        &materials::foliage_normal(size),
+        REPEAT,
+        Magnify::Linear,
+    );
     let foliage = document.material(
         "foliage",
         json!({
@@ -308,14 +434,17 @@ fn topiaries(document: &mut Document, stem: usize) {
         Vec2::ONE,
     );
     let trunk = Mesh::tube(&[Vec3::Y * 0.35, Vec3::Y * 0.8], 0.035, 10);
-    let mut crown = Mesh::sphere(Vec3::Y * 1.12, 0.44, 40, 24);
+    let mut crown = Mesh::sphere(Vec3::Y * 1.12, 0.44, 32, 18);
     crown.tangents.clear();
     for (p, uv) in crown.positions.iter_mut().zip(&mut crown.uv) {
         let bump = super::noise::noise(*uv, glam::IVec2::splat(11), 501) - 0.5;
         *p += (*p - Vec3::Y * 1.12) * (0.12 * bump);
         *uv *= Vec2::new(2.0, 1.0);
     }
-    let mesh = document.mesh("topiary", &[(&pot, clay), (&trunk, stem), (&crown, foliage)]);
+    let mesh = document.mesh(
+        "topiary",
+        &[(&pot, clay), (&trunk, stem), (&crown, foliage)],
+    );
     for (k, at) in (0u8..).zip(TOPIARIES) {
         let place = [at.x, 0.0, at.y];
         document.node(

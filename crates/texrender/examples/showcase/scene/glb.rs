@@ -57,13 +57,21 @@ impl Document {
         if list.is_null() {
             *list = json!([]);
         }
-        let list = list.as_array_mut().expect("arrays are made by this function");
+        let list = list
+            .as_array_mut()
+            .expect("arrays are made by this function");
         list.push(value);
         list.len() - 1
     }
 
     /// A texture of an encoded image with a sampler of its own.
-    pub(super) fn texture(&mut self, name: &str, png: &[u8], wrap: [Wrap; 2], magnify: Magnify) -> usize {
+    pub(super) fn texture(
+        &mut self,
+        name: &str,
+        png: &[u8],
+        wrap: [Wrap; 2],
+        magnify: Magnify,
+    ) -> usize {
         let view = self.view(png, None);
         let image = self.push(
             "images",
@@ -77,7 +85,10 @@ impl Document {
                 "wrapS": wrap[0] as u32, "wrapT": wrap[1] as u32,
             }),
         );
-        self.push("textures", json!({ "name": name, "source": image, "sampler": sampler }))
+        self.push(
+            "textures",
+            json!({ "name": name, "source": image, "sampler": sampler }),
+        )
     }
 
     pub(super) fn material(&mut self, name: &str, mut material: Value) -> usize {

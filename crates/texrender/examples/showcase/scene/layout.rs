@@ -5,29 +5,29 @@ use glam::{Mat3, Quat, Vec2, Vec3};
 use super::occlusion::Footprint;
 use super::paint::sin_cos;
 
-pub(super) const EYE: Vec3 = Vec3::new(0.25, 2.02, 5.35);
-pub(super) const TARGET: Vec3 = Vec3::new(0.02, 1.13, 0.0);
+pub(super) const EYE: Vec3 = Vec3::new(0.25, 1.98, 5.25);
+pub(super) const TARGET: Vec3 = Vec3::new(0.05, 1.16, 0.0);
 pub(super) const FOV_Y: f64 = 0.56;
 
 pub(super) const TABLE_HEIGHT: f32 = 0.84;
 pub(super) const TABLE_RADIUS: f32 = 1.4;
-pub(super) const TEAPOT: Vec3 = Vec3::new(-0.12, TABLE_HEIGHT, -0.18);
-pub(super) const TEAPOT_SCALE: f32 = 0.285;
+pub(super) const TEAPOT: Vec3 = Vec3::new(-0.14, TABLE_HEIGHT, -0.12);
+pub(super) const TEAPOT_SCALE: f32 = 0.33;
 pub(super) const TEAPOT_YAW: f32 = -0.22;
 /// Copper, steel, plastic: (x, z) on the table and radius.
 pub(super) const SPHERES: [(Vec2, f32); 3] = [
-    (Vec2::new(1.02, 0.42), 0.205),
-    (Vec2::new(0.60, 0.86), 0.235),
-    (Vec2::new(0.12, 1.10), 0.145),
+    (Vec2::new(1.06, 0.52), 0.185),
+    (Vec2::new(0.70, 0.93), 0.205),
+    (Vec2::new(0.30, 1.18), 0.13),
 ];
 pub(super) const CRATE: Footprint = Footprint {
-    centre: Vec2::new(1.98, 0.95),
+    centre: Vec2::new(2.02, 0.40),
     half: Vec2::splat(0.37),
     height: 0.74,
     yaw: -0.42,
 };
 pub(super) const PLANTER: Footprint = Footprint {
-    centre: Vec2::new(-2.3, -0.35),
+    centre: Vec2::new(-2.12, -0.95),
     half: Vec2::new(0.85, 0.24),
     height: 0.52,
     yaw: 0.45,
@@ -41,9 +41,9 @@ pub(super) const TOPIARIES: [Vec2; 10] = {
     let mut all = [Vec2::ZERO; 10];
     let mut k = 0;
     while k < 5 {
-        let z = -4.6 - 3.6 * k as f32;
-        all[2 * k] = Vec2::new(-1.75, z);
-        all[2 * k + 1] = Vec2::new(1.45, z);
+        let z = -5.4 - 3.6 * k as f32;
+        all[2 * k] = Vec2::new(-2.25, z);
+        all[2 * k + 1] = Vec2::new(1.95, z);
         k += 1;
     }
     all

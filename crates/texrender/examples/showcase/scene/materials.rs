@@ -35,27 +35,49 @@ fn tile(st: Vec2) -> Tile {
 
 pub(super) fn floor_color(size: UVec2) -> Vec<u8> {
     rgb(size, |st| {
-        let Tile { border, corner, dark, id } = tile(st);
+        let Tile {
+            border,
+            corner,
+            dark,
+            id,
+        } = tile(st);
         let tone = random(id.x, id.y, 91) - 0.5;
         let warp = fbm(st, IVec2::splat(6), 4, 11) - 0.5;
         let vein = (fbm(st + 0.12 * warp, IVec2::splat(5), 4, 12 + u32::from(dark)) - 0.5).abs();
         let vein = 1.0 - step(0.0, 0.035, vein);
         let stone = if dark {
-            mix(Vec3::new(0.20, 0.34, 0.37), Vec3::new(0.55, 0.68, 0.66), 0.45 * vein)
+            mix(
+                Vec3::new(0.20, 0.34, 0.37),
+                Vec3::new(0.55, 0.68, 0.66),
+                0.45 * vein,
+            )
         } else {
-            mix(Vec3::new(0.84, 0.78, 0.68), Vec3::new(0.62, 0.52, 0.42), 0.5 * vein)
+            mix(
+                Vec3::new(0.84, 0.78, 0.68),
+                Vec3::new(0.62, 0.52, 0.42),
+                0.5 * vein,
+            )
         };
         let stone = stone * (1.0 + 0.12 * tone + 0.16 * warp);
         let inset = Vec3::new(0.66, 0.33, 0.20) * (1.0 + 0.3 * warp);
         let laid = mix(stone, inset, step(0.20, 0.195, corner));
         let joint = joint(border, corner);
-        mix(laid, Vec3::new(0.40, 0.36, 0.31) * (1.0 + 0.4 * warp), joint)
+        mix(
+            laid,
+            Vec3::new(0.40, 0.36, 0.31) * (1.0 + 0.4 * warp),
+            joint,
+        )
     })
 }
 
 pub(super) fn floor_surface(size: UVec2) -> Vec<u8> {
     rgb(size, |st| {
-        let Tile { border, corner, dark, .. } = tile(st);
+        let Tile {
+            border,
+            corner,
+            dark,
+            ..
+        } = tile(st);
         let wear = fbm(st, IVec2::splat(5), 4, 51);
         let polish = if dark { 0.17 } else { 0.26 };
         let rough = polish + 0.3 * step(0.4, 0.75, wear);
@@ -65,8 +87,15 @@ pub(super) fn floor_surface(size: UVec2) -> Vec<u8> {
 
 pub(super) fn floor_normal(size: UVec2) -> Vec<u8> {
     normals(size, FLOOR_TILES as f32, |st| {
-        let Tile { border, corner, id, .. } = tile(st);
-        let edge = border.min((corner - 0.198).abs() * 0.7);
+        let Tile {
+            border, corner, id, ..
+        } = tile(st);
+        let inset = (corner - 0.198).abs() * 0.7;
+        let edge = if corner < 0.198 {
+            inset
+        } else {
+            border.min(inset)
+        };
         let pillow = 0.022 * step(0.0, 0.045, edge);
         // No two tiles lie quite level.
         let f = st * FLOOR_TILES as f32 - id.as_vec2() - 0.5;
@@ -78,7 +107,8 @@ pub(super) fn floor_normal(size: UVec2) -> Vec<u8> {
 
 fn joint(border: f32, corner: f32) -> f32 {
     let inset = band(corner, 0.198, 0.012, 0.012);
-    step(0.018, 0.01, border).max(inset)
+    let between = step(0.018, 0.01, border) * step(0.194, 0.2, corner);
+    between.max(inset)
 }
 
 /// Boards, their grain along s.
@@ -86,12 +116,22 @@ pub(super) fn wood_color(size: UVec2) -> Vec<u8> {
     rgb(size, |st| {
         let (board, seam) = board(st);
         let shift = random(board, 0, 3);
-        let bend = fbm(st + Vec2::new(shift, 0.0), IVec2::new(2, 8), 3, 61 + board.cast_unsigned());
+        let bend = fbm(
+            st + Vec2::new(shift, 0.0),
+            IVec2::new(2, 8),
+            3,
+            61 + board.cast_unsigned(),
+        );
         let rings = sin_cos((st.y * 9.0 + bend * 2.6) * TAU).0 * 0.5 + 0.5;
         let fibre = noise(st, IVec2::new(10, 180), 62);
         let dark = 0.55 * rings * rings + 0.35 * fibre;
         let tone = 0.86 + 0.28 * random(board, 1, 3);
-        mix(Vec3::new(0.66, 0.43, 0.25), Vec3::new(0.36, 0.19, 0.10), dark) * tone * (1.0 - 0.7 * seam)
+        mix(
+            Vec3::new(0.66, 0.43, 0.25),
+            Vec3::new(0.36, 0.19, 0.10),
+            dark,
+        ) * tone
+            * (1.0 - 0.7 * seam)
     })
 }
 
@@ -124,10 +164,18 @@ pub(super) fn brick_color(size: UVec2) -> Vec<u8> {
         let (edge, id) = brick(st);
         let grain = fbm(st, IVec2::splat(10), 4, 71);
         let tone = random(id.x, id.y, 72);
-        let clay = mix(Vec3::new(0.56, 0.27, 0.20), Vec3::new(0.74, 0.44, 0.32), tone);
+        let clay = mix(
+            Vec3::new(0.56, 0.27, 0.20),
+            Vec3::new(0.74, 0.44, 0.32),
+            tone,
+        );
         let clay = clay * (0.72 + 0.56 * grain);
         let mortar = Vec3::new(0.70, 0.66, 0.60) * (0.75 + 0.5 * grain);
-        mix(mortar, clay, step(0.008, 0.016, edge + 0.008 * (grain - 0.5)))
+        mix(
+            mortar,
+            clay,
+            step(0.008, 0.016, edge + 0.008 * (grain - 0.5)),
+        )
     })
 }
 
@@ -142,8 +190,8 @@ pub(super) fn brick_normal(size: UVec2) -> Vec<u8> {
 /// Dents of a hammer.
 pub(super) fn hammered_normal(size: UVec2) -> Vec<u8> {
     normals(size, 1.0, |st| {
-        let dent = cells(st, IVec2::splat(9), 81);
-        0.03 * dent.nearest * dent.nearest
+        let dent = cells(st, IVec2::splat(11), 81);
+        0.018 * dent.nearest * dent.nearest
     })
 }
 
@@ -163,7 +211,7 @@ pub(super) fn scratched_normal(size: UVec2) -> Vec<u8> {
         let (sin, cos) = sin_cos(PI * (0.15 + 0.3 * r(1)) + if r(2) > 0.8 { 1.3 } else { 0.0 });
         let from = Vec2::new(r(3), r(4)) * size.as_vec2();
         let length = (30.0 + 170.0 * r(5) * r(6)) as u32;
-        let depth = 0.0012 * (0.25 + r(7));
+        let depth = 0.003 * (0.25 + r(7));
         for k in 0..length {
             let taper = 1.0 - (2.0 * k as f32 / length as f32 - 1.0).abs();
             let at = (from + Vec2::new(cos, sin) * k as f32).floor().as_ivec2();
@@ -181,7 +229,8 @@ pub(super) fn leaf(size: UVec2) -> Vec<u8> {
         let p = Vec2::new(st.x - 0.5, 0.62 - st.y);
         let angle = libm::atan2f(p.x, p.y);
         let lobes = sin_cos(5.0 * angle).1;
-        let reach = 0.36 + 0.075 * lobes + 0.10 * step(0.9, 0.0, angle.abs()) - 0.16 * step(2.6, PI, angle.abs());
+        let reach = 0.36 + 0.075 * lobes + 0.10 * step(0.9, 0.0, angle.abs())
+            - 0.16 * step(2.6, PI, angle.abs());
         let shape = reach - p.length();
         let stalk = band(p.x, 0.0, 0.016, 0.01) * step(0.05, 0.0, p.y);
         // Veins run to the tips of the lobes.
@@ -189,8 +238,16 @@ pub(super) fn leaf(size: UVec2) -> Vec<u8> {
         let vein = p.length() * sin_cos(angle - spoke).0.abs();
         let pale = step(0.014, 0.004, vein).max(stalk);
         let mottled = fbm(st, IVec2::splat(6), 3, 101);
-        let green = mix(Vec3::new(0.13, 0.32, 0.12), Vec3::new(0.40, 0.58, 0.20), mottled);
-        let rim = mix(green, Vec3::new(0.62, 0.66, 0.28), step(0.07, 0.0, shape) * 0.5);
+        let green = mix(
+            Vec3::new(0.13, 0.32, 0.12),
+            Vec3::new(0.40, 0.58, 0.20),
+            mottled,
+        );
+        let rim = mix(
+            green,
+            Vec3::new(0.62, 0.66, 0.28),
+            step(0.07, 0.0, shape) * 0.5,
+        );
         let color = mix(rim, Vec3::new(0.74, 0.82, 0.50), 0.6 * pale);
         color.extend(step(-0.006, 0.006, shape).max(stalk))
     })
@@ -201,12 +258,18 @@ pub(super) fn foliage(size: UVec2) -> Vec<u8> {
     rgb(size, |st| {
         let leaf = cells(st, IVec2::splat(14), 111);
         let light = (1.0 - leaf.nearest).clamp(0.0, 1.0) * (0.6 + 0.5 * leaf.id);
-        mix(Vec3::new(0.06, 0.14, 0.07), Vec3::new(0.36, 0.52, 0.20), light)
+        mix(
+            Vec3::new(0.06, 0.14, 0.07),
+            Vec3::new(0.36, 0.52, 0.20),
+            light,
+        )
     })
 }
 
 pub(super) fn foliage_normal(size: UVec2) -> Vec<u8> {
-    normals(size, 1.0, |st| -0.06 * cells(st, IVec2::splat(14), 111).nearest)
+    normals(size, 1.0, |st| {
+        -0.06 * cells(st, IVec2::splat(14), 111).nearest
+    })
 }
 
 /// An iron trellis of lozenges; alpha is the bars.
@@ -218,7 +281,11 @@ pub(super) fn trellis(size: UVec2) -> Vec<u8> {
         let under = bar(p.x - p.y);
         let rivet = over * under;
         let rust = fbm(st, IVec2::splat(8), 3, 121);
-        let color = mix(Vec3::new(0.80, 0.78, 0.72), Vec3::new(0.62, 0.56, 0.48), rust) * (0.8 + 0.2 * over + 0.1 * rivet);
+        let color = mix(
+            Vec3::new(0.80, 0.78, 0.72),
+            Vec3::new(0.62, 0.56, 0.48),
+            rust,
+        ) * (0.8 + 0.2 * over + 0.1 * rivet);
         color.extend(over.max(under))
     })
 }
@@ -270,7 +337,12 @@ fn blossom_branch(st: Vec2) -> (f32, f32) {
         let size = 0.03 + 0.018 * random(k, 2, 132);
         flower = flower.max(step(0.0, 0.006, size * (0.8 + 0.2 * lobes) - d.length()));
         flower *= 1.0 - 0.7 * step(0.009, 0.006, d.length());
-        let twig = band(p.x, x + 0.03 * (p.y - path(x)) / (side * reach), 0.006, 0.006);
+        let twig = band(
+            p.x,
+            x + 0.03 * (p.y - path(x)) / (side * reach),
+            0.006,
+            0.006,
+        );
         let between = (p.y - path(x)) * side;
         ink = ink.max(twig * step(0.0, 0.004, between) * step(reach, reach - 0.01, between));
     }

@@ -21,7 +21,11 @@ pub(super) struct Mesh {
 impl Mesh {
     /// A grid of (columns + 1)·(rows + 1) vertices, from (0, 0) to (1, 1); `vertex` gives position, normal
     /// and uv. The front is where the first parameter runs right and the second up.
-    pub(super) fn grid(columns: u32, rows: u32, vertex: impl Fn(Vec2) -> (Vec3, Vec3, Vec2)) -> Self {
+    pub(super) fn grid(
+        columns: u32,
+        rows: u32,
+        vertex: impl Fn(Vec2) -> (Vec3, Vec3, Vec2),
+    ) -> Self {
         let mut mesh = Self::default();
         for row in 0..=rows {
             for column in 0..=columns {
@@ -48,7 +52,11 @@ impl Mesh {
         let normal = right.cross(up).normalize();
         Self::grid(1, 1, |at| {
             let p = at * 2.0 - 1.0;
-            (centre + right * p.x + up * p.y, normal, Vec2::new(at.x, 1.0 - at.y))
+            (
+                centre + right * p.x + up * p.y,
+                normal,
+                Vec2::new(at.x, 1.0 - at.y),
+            )
         })
     }
 
@@ -81,7 +89,11 @@ impl Mesh {
             let (sin, cos) = sin_cos(TAU * at.x);
             let (height, out) = sin_cos(TAU * 0.25 * (2.0 * at.y - 1.0));
             let normal = Vec3::new(-sin * out, height, -cos * out);
-            (centre + normal * radius, normal, Vec2::new(at.x, 1.0 - at.y))
+            (
+                centre + normal * radius,
+                normal,
+                Vec2::new(at.x, 1.0 - at.y),
+            )
         });
         mesh.tangents = mesh
             .uv

@@ -28,7 +28,10 @@ pub(super) fn sin_cos(angle: f32) -> (f32, f32) {
 /// A picture of three channels; `colour` is asked at texel centres and answers as it is stored.
 pub(super) fn rgb(size: UVec2, colour: impl Fn(Vec2) -> Vec3) -> Vec<u8> {
     let texels = each(size, |st| colour(st).extend(1.0));
-    let bytes: Vec<u8> = texels.iter().flat_map(|c| bytes(*c)[..3].to_vec()).collect();
+    let bytes: Vec<u8> = texels
+        .iter()
+        .flat_map(|c| bytes(*c)[..3].to_vec())
+        .collect();
     png(size, &bytes, ExtendedColorType::Rgb8)
 }
 
@@ -79,7 +82,9 @@ fn each(size: UVec2, value: impl Fn(Vec2) -> Vec4) -> Vec<Vec4> {
 }
 
 fn bytes(value: Vec4) -> [u8; 4] {
-    value.to_array().map(|x| (x.clamp(0.0, 1.0) * 255.0 + 0.5) as u8)
+    value
+        .to_array()
+        .map(|x| (x.clamp(0.0, 1.0) * 255.0 + 0.5) as u8)
 }
 
 /// Encodes with fixed settings, so that equal texels are equal files.

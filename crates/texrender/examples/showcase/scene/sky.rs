@@ -21,10 +21,18 @@ pub(super) fn sky(size: UVec2) -> Vec<u8> {
         for (k, ridge) in RIDGES.iter().enumerate() {
             let far = k as f32 / (RIDGES.len() - 1) as f32;
             let top = ridge_height(st.x, ridge);
-            let rock = mix(Vec3::new(0.60, 0.70, 0.84), Vec3::new(0.25, 0.42, 0.48), far);
+            let rock = mix(
+                Vec3::new(0.53, 0.65, 0.82),
+                Vec3::new(0.20, 0.38, 0.40),
+                far,
+            );
             let lit = mix(rock, HORIZON, 0.35 * glow(st, 0.5));
             // Mist lies in the valleys.
-            let misty = mix(HORIZON * 0.98, lit, step(-0.02, 0.9, height / ridge.top));
+            let misty = mix(
+                HORIZON * 0.98,
+                lit,
+                step(-0.25, 0.75 - 0.2 * far, height / ridge.top),
+            );
             color = mix(color, misty, step(-0.0012, 0.0012, top - height));
         }
         color
@@ -39,10 +47,30 @@ struct Ridge {
 }
 
 const RIDGES: [Ridge; 4] = [
-    Ridge { top: 0.40, rough: 0.24, cells: 5, seed: 201 },
-    Ridge { top: 0.29, rough: 0.18, cells: 6, seed: 219 },
-    Ridge { top: 0.20, rough: 0.13, cells: 8, seed: 233 },
-    Ridge { top: 0.12, rough: 0.07, cells: 11, seed: 247 },
+    Ridge {
+        top: 0.46,
+        rough: 0.26,
+        cells: 5,
+        seed: 201,
+    },
+    Ridge {
+        top: 0.33,
+        rough: 0.20,
+        cells: 6,
+        seed: 219,
+    },
+    Ridge {
+        top: 0.21,
+        rough: 0.14,
+        cells: 8,
+        seed: 233,
+    },
+    Ridge {
+        top: 0.11,
+        rough: 0.07,
+        cells: 11,
+        seed: 247,
+    },
 ];
 
 fn ridge_height(s: f32, ridge: &Ridge) -> f32 {
@@ -60,7 +88,11 @@ fn air(st: Vec2, height: f32) -> Vec3 {
     let stretched = fbm(st, IVec2::new(4, 14), 5, 261);
     let cover = step(0.52, 0.74, stretched) * step(0.2, 0.45, height);
     let edge = noise(st, IVec2::new(6, 30), 267);
-    mix(warm, Vec3::new(1.0, 0.965, 0.92), cover * (0.55 + 0.25 * edge))
+    mix(
+        warm,
+        Vec3::new(1.0, 0.965, 0.92),
+        cover * (0.55 + 0.25 * edge),
+    )
 }
 
 /// 1 in the sun, falling to 0 at `reach`.

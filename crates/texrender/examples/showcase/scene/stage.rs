@@ -13,7 +13,7 @@ use super::paint::sin_cos;
 use super::{occlusion, sky};
 
 /// Half the side of the floor, and the distance of the sky.
-const FAR: f32 = 90.0;
+const FAR: f32 = 400.0;
 /// Side of a floor tile.
 const TILE: f32 = 0.52;
 
@@ -22,7 +22,7 @@ pub(super) fn camera_and_lights(document: &mut Document) {
         "camera",
         json!({
             "type": "perspective",
-            "perspective": { "yfov": FOV_Y, "aspectRatio": 16.0 / 9.0, "znear": 0.05, "zfar": 400 },
+            "perspective": { "yfov": FOV_Y, "aspectRatio": 16.0 / 9.0, "znear": 0.05, "zfar": 1000 },
         }),
         json!({ "translation": EYE.to_array(), "rotation": aim(EYE, TARGET).to_array() }),
     );
@@ -36,7 +36,7 @@ pub(super) fn camera_and_lights(document: &mut Document) {
         "spot on the teapot",
         json!({
             "type": "spot", "color": [1.0, 0.95, 0.88], "intensity": 26.0, "range": 20.0,
-            "spot": { "innerConeAngle": 0.12, "outerConeAngle": 0.36 },
+            "spot": { "innerConeAngle": 0.14, "outerConeAngle": 0.40 },
         }),
         json!({ "translation": lamp.to_array(), "rotation": aim(lamp, TEAPOT + Vec3::Y * 0.4).to_array() }),
     );
@@ -51,7 +51,12 @@ pub(super) fn floor_and_sky(document: &mut Document) {
     let repeat = [Wrap::Repeat; 2];
     let size = UVec2::splat(512);
     let color = document.texture("floor colour", &floor_color(size), repeat, Magnify::Linear);
-    let surface = document.texture("floor surface", &floor_surface(size / 2), repeat, Magnify::Linear);
+    let surface = document.texture(
+        "floor surface",
+        &floor_surface(size / 2),
+        repeat,
+        Magnify::Linear,
+    );
     let normal = document.texture("floor normal", &floor_normal(size), repeat, Magnify::Linear);
     let shade = occlusion::floor(size);
     let shade = document.texture("floor occlusion", &shade, [Wrap::Clamp; 2], Magnify::Linear);
@@ -74,21 +79,29 @@ pub(super) fn floor_and_sky(document: &mut Document) {
     );
     let ground = Mesh::grid(8, 8, |at| {
         let p = (at * 2.0 - 1.0) * FAR;
-        (Vec3::new(p.x, 0.0, -p.y), Vec3::Y, Vec2::new(at.x, 1.0 - at.y))
+        (
+            Vec3::new(p.x, 0.0, -p.y),
+            Vec3::Y,
+            Vec2::new(at.x, 1.0 - at.y),
+        )
     });
     let mesh = document.mesh("floor", &[(&ground.with_plan(FLOOR_PLAN), floor)]);
     document.node("floor", json!({ "mesh": mesh }));
 
     let painted = sky::sky(UVec2::new(1024, 512));
-    let painted = document.texture("sky", &painted, [Wrap::Mirror, Wrap::Clamp], Magnify::Linear);
+    let painted = document.texture(
+        "sky",
+        &painted,
+        [Wrap::Mirror, Wrap::Clamp],
+        Magnify::Linear,
+    );
     let material = document.material("sky", unlit(json!({
         "pbrMetallicRoughness": { "baseColorTexture": { "index": painted } }, "doubleSided": true,
     })));
     // Six pictures round the horizon, every other one mirrored; the first is ahead of the camera.
-    let top = 20.0;
+    let top = 0.222 * FAR;
     let bottom = -top * sky::GROUND / (1.0 - sky::GROUND);
-    let screen = ring(0.9 * FAR, &[bottom, top]);
-    let mut screen = screen;
+    let mut screen = ring(0.9 * FAR, &[bottom, top]);
     for uv in &mut screen.uv {
         uv.x = uv.x * 6.0 + 0.5;
     }
@@ -99,12 +112,22 @@ pub(super) fn floor_and_sky(document: &mut Document) {
 
 /// Veils of mist on the far floor: unlit, blended, densest at the horizon.
 fn mist(document: &mut Document) {
-    let material = document.material("mist", unlit(json!({
-        "alphaMode": "BLEND", "doubleSided": true,
-        "pbrMetallicRoughness": { "metallicFactor": 0 },
-    })));
+    let material = document.material(
+        "mist",
+        unlit(json!({
+            "alphaMode": "BLEND", "doubleSided": true,
+            "pbrMetallicRoughness": { "metallicFactor": 0 },
+        })),
+    );
     let color = sky::HORIZON.to_array().map(|c| libm::powf(c, 2.2));
-    for (radius, density) in [(16.0, 0.35), (26.0, 0.55), (42.0, 0.8), (68.0, 0.95)] {
+    for (radius, density) in [
+        (16.0, 0.2),
+        (28.0, 0.3),
+        (50.0, 0.45),
+        (90.0, 0.6),
+        (170.0, 0.8),
+        (300.0, 0.9),
+    ] {
         let eye = EYE.y;
         let rows = [0.0, 0.35 * eye, 0.7 * eye, eye, 1.5 * eye, 2.6 * eye];
         let weights = [0.0, 0.25, 0.7, 1.0, 0.6, 0.0];
@@ -129,6 +152,10 @@ fn ring(radius: f32, rows: &[f32]) -> Mesh {
         let (sin, cos) = sin_cos(TAU * at.x);
         let inward = Vec3::new(-sin, 0.0, cos);
         let y = rows[(at.y * last as f32).round() as usize];
-        (-inward * radius + Vec3::Y * y, inward, Vec2::new(at.x, 1.0 - at.y))
+        (
+            -inward * radius + Vec3::Y * y,
+            inward,
+            Vec2::new(at.x, 1.0 - at.y),
+        )
     })
 }

@@ -4,9 +4,7 @@ use glam::{Mat3, UVec2, Vec2, Vec3, Vec4};
 use serde_json::json;
 
 use super::glb::{Document, Magnify, Wrap};
-use super::layout::{
-    SPHERES, TABLE_HEIGHT, TABLE_RADIUS, TEAPOT, TEAPOT_SCALE, TEAPOT_YAW, yaw,
-};
+use super::layout::{SPHERES, TABLE_HEIGHT, TABLE_RADIUS, TEAPOT, TEAPOT_SCALE, TEAPOT_YAW, yaw};
 use super::mesh::Mesh;
 use super::paint::sin_cos;
 use super::{ceramic, materials, occlusion, teapot};
@@ -23,8 +21,18 @@ pub(super) fn add(document: &mut Document) {
 fn add_table(document: &mut Document) {
     let mirror = [Wrap::Mirror; 2];
     let size = UVec2::splat(512);
-    let color = document.texture("wood colour", &materials::wood_color(size), mirror, Magnify::Linear);
-    let normal = document.texture("wood normal", &materials::wood_normal(size), mirror, Magnify::Linear);
+    let color = document.texture(
+        "wood colour",
+        &materials::wood_color(size),
+        mirror,
+        Magnify::Linear,
+    );
+    let normal = document.texture(
+        "wood normal",
+        &materials::wood_normal(size),
+        mirror,
+        Magnify::Linear,
+    );
     let shade = occlusion::table(size / 2);
     let shade = document.texture("table occlusion", &shade, CLAMP, Magnify::Linear);
     let top = document.material(
@@ -37,9 +45,19 @@ fn add_table(document: &mut Document) {
             "occlusionTexture": { "index": shade, "texCoord": 1 },
         }),
     );
+    let edge = document.material(
+        "table edge",
+        json!({
+            "pbrMetallicRoughness": {
+                "baseColorTexture": { "index": color }, "metallicFactor": 0, "roughnessFactor": 0.38,
+            },
+            "normalTexture": { "index": normal },
+        }),
+    );
+    // Once round the foot is the width of one board, grain upright.
     let upright = |texture: usize| {
         json!({ "index": texture, "extensions": { "KHR_texture_transform": {
-            "rotation": std::f32::consts::FRAC_PI_2,
+            "scale": [0.2, 1.0], "rotation": std::f32::consts::FRAC_PI_2, "offset": [0.0, 0.23],
         } } })
     };
     let turned = document.material(
@@ -60,27 +78,48 @@ fn add_table(document: &mut Document) {
     let rim = Mesh::turned(
         &[
             &[[0.3, h - 0.085], [r - 0.06, h - 0.085]],
-            &[[r - 0.06, h - 0.085], [r - 0.02, h - 0.07], [r - 0.02, h - 0.055]],
-            &[[r - 0.02, h - 0.055], [r + 0.012, h - 0.04], [r + 0.016, h - 0.02], [r, h - 0.006], [r - 0.025, h]],
+            &[
+                [r - 0.06, h - 0.085],
+                [r - 0.02, h - 0.07],
+                [r - 0.02, h - 0.055],
+            ],
+            &[
+                [r - 0.02, h - 0.055],
+                [r + 0.012, h - 0.04],
+                [r + 0.016, h - 0.02],
+                [r, h - 0.006],
+                [r - 0.025, h],
+            ],
         ],
         96,
-        Vec2::new(0.25, 1.0),
+        Vec2::new(0.16, 1.0),
     );
     let foot = Mesh::turned(
         &[
             &[[0.55, 0.0], [0.56, 0.03], [0.53, 0.07]],
-            &[[0.53, 0.07], [0.40, 0.085], [0.26, 0.14], [0.18, 0.22], [0.15, 0.30]],
+            &[
+                [0.53, 0.07],
+                [0.40, 0.085],
+                [0.26, 0.14],
+                [0.18, 0.22],
+                [0.15, 0.30],
+            ],
             &[[0.15, 0.30], [0.19, 0.325], [0.19, 0.355], [0.15, 0.38]],
-            &[[0.15, 0.38], [0.21, 0.44], [0.225, 0.51], [0.18, 0.60], [0.13, 0.66], [0.14, 0.70]],
+            &[
+                [0.15, 0.38],
+                [0.21, 0.44],
+                [0.225, 0.51],
+                [0.18, 0.60],
+                [0.13, 0.66],
+                [0.14, 0.70],
+            ],
             &[[0.14, 0.70], [0.28, 0.73], [0.40, h - 0.085]],
         ],
         48,
         Vec2::ONE,
     );
-    let mut wood = rim;
-    wood.add(&foot);
     let board = board.with_plan(r);
-    let mesh = document.mesh("table", &[(&board, top), (&wood, turned)]);
+    let mesh = document.mesh("table", &[(&board, top), (&rim, edge), (&foot, turned)]);
     document.node("table", json!({ "mesh": mesh }));
 }
 
@@ -103,8 +142,18 @@ fn add_teapot(document: &mut Document) {
         )
     };
     let wrap = [Wrap::Repeat, Wrap::Clamp];
-    let vessel = glazed("vessel", ceramic::vessel_color(big), ceramic::vessel_surface(small), wrap);
-    let limbs = glazed("limbs", ceramic::limb_color(small), ceramic::limb_surface(small / 2), wrap);
+    let vessel = glazed(
+        "vessel",
+        ceramic::vessel_color(big),
+        ceramic::vessel_surface(small),
+        wrap,
+    );
+    let limbs = glazed(
+        "limbs",
+        ceramic::limb_color(small),
+        ceramic::limb_surface(small / 2),
+        wrap,
+    );
     let parts = (teapot::vessel(TEAPOT_SCALE), teapot::limbs(TEAPOT_SCALE));
     let mesh = document.mesh("teapot", &[(&parts.0, vessel), (&parts.1, limbs)]);
     document.node(
@@ -119,9 +168,7 @@ fn add_spheres(document: &mut Document) {
     let size = UVec2::splat(512);
     let grounded = materials::grounded(UVec2::new(4, 64));
     let grounded = document.texture("grounded", &grounded, CLAMP, Magnify::Linear);
-    let tiled = |texture: usize, s: f32, t: f32| {
-        json!({ "index": texture, "extensions": { "KHR_texture_transform": { "scale": [s, t] } } })
-    };
+    let tiled = |texture: usize, s: f32, t: f32| json!({ "index": texture, "extensions": { "KHR_texture_transform": { "scale": [s, t] } } });
 
     let hammered = materials::hammered_normal(size / 2);
     let hammered = document.texture("hammered normal", &hammered, REPEAT, Magnify::Linear);
@@ -131,7 +178,7 @@ fn add_spheres(document: &mut Document) {
         "hammered copper",
         json!({
             "pbrMetallicRoughness": {
-                "baseColorFactor": [0.91, 0.50, 0.32, 1.0],
+                "baseColorFactor": [0.86, 0.37, 0.20, 1.0],
                 "metallicRoughnessTexture": tiled(tarnish, 2.0, 1.0),
             },
             "normalTexture": tiled(hammered, 2.0, 1.0),
@@ -144,7 +191,7 @@ fn add_spheres(document: &mut Document) {
         "scratched steel",
         json!({
             "pbrMetallicRoughness": {
-                "baseColorFactor": [0.80, 0.81, 0.83, 1.0], "metallicFactor": 1, "roughnessFactor": 0.13,
+                "baseColorFactor": [0.80, 0.81, 0.83, 1.0], "metallicFactor": 1, "roughnessFactor": 0.09,
             },
             "normalTexture": tiled(scratched, 3.0, 1.5),
             "occlusionTexture": { "index": grounded },
@@ -172,7 +219,10 @@ fn add_spheres(document: &mut Document) {
         let material = [copper, steel, plastic][k];
         let mesh = document.mesh(names[k], &[(&ball, material)]);
         let place = Vec3::new(at.x, TABLE_HEIGHT + radius, at.y);
-        document.node(names[k], json!({ "mesh": mesh, "translation": place.to_array() }));
+        document.node(
+            names[k],
+            json!({ "mesh": mesh, "translation": place.to_array() }),
+        );
     }
 }
 
