@@ -1,7 +1,7 @@
 //! Documents and settings that random mutation broke something with, each made again in code.
 
 use serde_json::json;
-use texrender::{FinishOptions, LoadOptions, save};
+use texrender::{EnvironmentSource, FinishOptions, LoadOptions, Settings, save};
 
 use crate::glb::{Glb, square};
 
@@ -50,7 +50,10 @@ fn radiance_beyond_an_hdr_file_is_held_at_its_ends() {
             }),
         );
         glb.quad(0.0, material);
-        let film = glb.render(&square(2));
+        let film = glb.render(&Settings {
+            environment: EnvironmentSource::None,
+            ..square(2)
+        });
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("picture.hdr");
         let options = FinishOptions {
