@@ -96,6 +96,18 @@ impl Document {
         self.push("materials", material)
     }
 
+    /// A material of nothing but a black texture with alpha: a shadow to lay on something.
+    pub(super) fn shadow(&mut self, name: &str, png: &[u8]) -> usize {
+        let texture = self.texture(name, png, [Wrap::Clamp; 2], Magnify::Linear);
+        self.material(
+            name,
+            json!({
+                "alphaMode": "BLEND", "extensions": { "KHR_materials_unlit": {} },
+                "pbrMetallicRoughness": { "baseColorTexture": { "index": texture }, "metallicFactor": 0 },
+            }),
+        )
+    }
+
     /// A mesh of one primitive a material.
     pub(super) fn mesh(&mut self, name: &str, parts: &[(&Mesh, usize)]) -> usize {
         let primitives: Vec<Value> = parts

@@ -211,7 +211,7 @@ pub(super) fn scratched_normal(size: UVec2) -> Vec<u8> {
         let (sin, cos) = sin_cos(PI * (0.15 + 0.3 * r(1)) + if r(2) > 0.8 { 1.3 } else { 0.0 });
         let from = Vec2::new(r(3), r(4)) * size.as_vec2();
         let length = (30.0 + 170.0 * r(5) * r(6)) as u32;
-        let depth = 0.003 * (0.25 + r(7));
+        let depth = 0.0016 * (0.25 + r(7));
         for k in 0..length {
             let taper = 1.0 - (2.0 * k as f32 / length as f32 - 1.0).abs();
             let at = (from + Vec2::new(cos, sin) * k as f32).floor().as_ivec2();

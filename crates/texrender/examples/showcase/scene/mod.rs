@@ -7,7 +7,7 @@
 //! | spheres | tangents of the file, hammered and scratched metal, vertex colours |
 //! | planter, trellis, ivy | generated tangents, masked alpha, two-sided leaves |
 //! | crate | nearest magnification |
-//! | panes, mist | blended surfaces in the order of depth |
+//! | panes, shadows, mist | blended surfaces in the order of depth |
 //! | lantern | emission above 1, and a light inside |
 //! | sky | an unlit surface, mirrored round the horizon |
 #![expect(
@@ -28,6 +28,7 @@ mod mesh;
 mod noise;
 mod occlusion;
 mod paint;
+mod shadow;
 mod sky;
 mod stage;
 mod table;
@@ -39,7 +40,8 @@ use glb::Document;
 pub(crate) fn build() -> Vec<u8> {
     let mut document = Document::new();
     stage::camera_and_lights(&mut document);
-    stage::floor_and_sky(&mut document);
+    stage::floor(&mut document);
+    stage::sky(&mut document);
     table::add(&mut document);
     garden::add(&mut document);
     document.finish()

@@ -1,4 +1,4 @@
-//! Soft shadows of what stands about, in closed form: the share of the sky that each thing hides.
+//! The share of the sky that each thing hides from floor and table, in closed form.
 
 use glam::{UVec2, Vec2};
 

@@ -10,7 +10,7 @@ use super::layout::{EYE, FLOOR_PLAN, FOV_Y, LANTERN, TARGET, TEAPOT, aim};
 use super::materials::{FLOOR_TILES, floor_color, floor_normal, floor_surface};
 use super::mesh::Mesh;
 use super::paint::sin_cos;
-use super::{occlusion, sky};
+use super::{occlusion, shadow, sky};
 
 /// Half the side of the floor, and the distance of the sky.
 const FAR: f32 = 400.0;
@@ -31,7 +31,7 @@ pub(super) fn camera_and_lights(document: &mut Document) {
         json!({ "type": "directional", "color": [1.0, 0.86, 0.66], "intensity": 0.8 }),
         json!({ "rotation": aim(Vec3::new(0.6, 0.55, -0.65), Vec3::ZERO).to_array() }),
     );
-    let lamp = Vec3::new(-2.4, 4.4, 2.6);
+    let lamp = Vec3::new(-3.0, 4.4, 1.9);
     document.light(
         "spot on the teapot",
         json!({
@@ -47,7 +47,7 @@ pub(super) fn camera_and_lights(document: &mut Document) {
     );
 }
 
-pub(super) fn floor_and_sky(document: &mut Document) {
+pub(super) fn floor(document: &mut Document) {
     let repeat = [Wrap::Repeat; 2];
     let size = UVec2::splat(512);
     let color = document.texture("floor colour", &floor_color(size), repeat, Magnify::Linear);
@@ -85,9 +85,15 @@ pub(super) fn floor_and_sky(document: &mut Document) {
             Vec2::new(at.x, 1.0 - at.y),
         )
     });
-    let mesh = document.mesh("floor", &[(&ground.with_plan(FLOOR_PLAN), floor)]);
+    let dark = document.shadow("floor shadow", &shadow::floor(size));
+    let half = shadow::FLOOR_HALF;
+    let veil = Mesh::quad(Vec3::Y * 0.003, Vec3::X * half, Vec3::NEG_Z * half);
+    let parts = [(&ground.with_plan(FLOOR_PLAN), floor), (&veil, dark)];
+    let mesh = document.mesh("floor", &parts);
     document.node("floor", json!({ "mesh": mesh }));
+}
 
+pub(super) fn sky(document: &mut Document) {
     let painted = sky::sky(UVec2::new(1024, 512));
     let painted = document.texture(
         "sky",

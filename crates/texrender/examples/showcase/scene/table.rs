@@ -7,7 +7,7 @@ use super::glb::{Document, Magnify, Wrap};
 use super::layout::{SPHERES, TABLE_HEIGHT, TABLE_RADIUS, TEAPOT, TEAPOT_SCALE, TEAPOT_YAW, yaw};
 use super::mesh::Mesh;
 use super::paint::sin_cos;
-use super::{ceramic, materials, occlusion, teapot};
+use super::{ceramic, materials, occlusion, shadow, teapot};
 
 const REPEAT: [Wrap; 2] = [Wrap::Repeat; 2];
 const CLAMP: [Wrap; 2] = [Wrap::Clamp; 2];
@@ -119,7 +119,18 @@ fn add_table(document: &mut Document) {
         Vec2::ONE,
     );
     let board = board.with_plan(r);
-    let mesh = document.mesh("table", &[(&board, top), (&rim, edge), (&foot, turned)]);
+    let dark = document.shadow("table shadow", &shadow::table(size / 2));
+    let mut veil = Mesh::turned(
+        &[&[[r - 0.025, h + 0.002], [0.0, h + 0.002]]],
+        96,
+        Vec2::ONE,
+    )
+    .with_plan(r);
+    veil.uv = std::mem::take(&mut veil.uv1);
+    let mesh = document.mesh(
+        "table",
+        &[(&board, top), (&rim, edge), (&foot, turned), (&veil, dark)],
+    );
     document.node("table", json!({ "mesh": mesh }));
 }
 
