@@ -10,7 +10,7 @@ use super::noise::{fbm, noise};
 use super::paint::{band, mix, rgb, sin_cos, step};
 
 /// Lengths of the tile in units of Newell's teapot.
-const AROUND: f32 = core::f32::consts::TAU;
+const AROUND: f32 = TAU;
 pub(super) const HEIGHT: f32 = 5.35;
 /// Heights on the profile where one ring of patches meets the next.
 pub(super) const RINGS: [f32; 7] = [0.0, 0.4, 1.35, 2.95, 3.25, 4.45, 5.35];

@@ -1,11 +1,11 @@
-//! Stone, wood, brick, metal, paper, glass, leaves and a picture of 24 by 24 texels.
+//! Stone, wood, brick, metal, paper, glass and leaves.
 
 use std::f32::consts::{PI, TAU};
 
 use glam::{IVec2, UVec2, Vec2, Vec3, Vec4};
 
 use super::noise::{cells, fbm, noise, random};
-use super::paint::{band, grey, mix, normals, normals_of, png, rgb, rgba, sin_cos, step};
+use super::paint::{band, grey, mix, normals, normals_of, rgb, rgba, sin_cos, step};
 
 /// Floor tiles along a side of the texture; a chequer, so even.
 pub(super) const FLOOR_TILES: i32 = 4;
@@ -352,52 +352,4 @@ fn blossom_branch(st: Vec2) -> (f32, f32) {
 /// Shade on something that stands on something: dark below, light above.
 pub(super) fn grounded(size: UVec2) -> Vec<u8> {
     grey(size, |st| 1.0 - 0.85 * step(0.5, 1.0, st.y))
-}
-
-/// A picture for large texels: 24 rows of 24, a letter a colour.
-const PICTURE: [&str; 24] = [
-    "kkkkkkkkkkkkkkkkkkkkkkkk",
-    "kbbbbbbbbbbbbbbbbbbbbbbk",
-    "kbbbbbbbbbbbwbbbbbbbbbbk",
-    "kbbyyybbbbbbbwbbbbbbbbbk",
-    "kbyyyyybbbbbwbbbbbbwwbbk",
-    "kbyyyyybbbbbbwbbbbwwwwbk",
-    "kbyyyyybbbbbbbbbbbbbbbbk",
-    "kbbyyybbbbbbrrbbbbbbbbbk",
-    "kbbbbbbbbbbrrrrbbbbbbbbk",
-    "kbbbbbkkbwwwwwwwwbbrrbbk",
-    "kbbbbkbbrrrrrrrrrrbrbbbk",
-    "kccccckrrorrrrrrrrrrccck",
-    "kcccckcrrorrrrrrrrrrccck",
-    "kggggkgrrorrrrrrrrrgcggk",
-    "kgggggkrrrrrrrrrrrrggggk",
-    "kggggggkdrrrrrrrrdgggggk",
-    "kgGgggggddddddddddgggGgk",
-    "kggggGggggggggggggGggggk",
-    "kkkkkkkkkkkkkkkkkkkkkkkk",
-    "kwwwwkwwwwkwkkwkwwwwkwwk",
-    "kkwwkkwkkkkkwwkkkwwkkwwk",
-    "kkwwkkwwwkkkwwkkkwwkkwwk",
-    "kkwwkkwkkkkkwwkkkwwkkkkk",
-    "kkwwkkwwwwkwkkwkkwwkkwwk",
-];
-
-pub(super) fn picture() -> Vec<u8> {
-    let bytes: Vec<u8> = PICTURE
-        .iter()
-        .flat_map(|row| row.bytes())
-        .flat_map(|letter| match letter {
-            b'k' => [34, 28, 46],
-            b'b' => [108, 184, 226],
-            b'c' => [150, 208, 200],
-            b'g' => [92, 160, 72],
-            b'G' => [236, 220, 120],
-            b'y' => [255, 212, 84],
-            b'r' => [206, 62, 52],
-            b'o' => [240, 150, 120],
-            b'd' => [128, 34, 44],
-            _ => [250, 244, 230],
-        })
-        .collect();
-    png(UVec2::splat(24), &bytes, image::ExtendedColorType::Rgb8)
 }

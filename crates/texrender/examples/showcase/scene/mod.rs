@@ -20,17 +20,22 @@
 )]
 
 mod ceramic;
+mod chest;
 mod garden;
 mod glb;
+mod lantern;
 mod layout;
 mod materials;
 mod mesh;
 mod noise;
 mod occlusion;
 mod paint;
+mod picture;
+mod planter;
 mod shadow;
 mod sky;
 mod stage;
+mod still_life;
 mod table;
 mod teapot;
 
@@ -43,6 +48,7 @@ pub(crate) fn build() -> Vec<u8> {
     stage::floor(&mut document);
     stage::sky(&mut document);
     table::add(&mut document);
+    still_life::add(&mut document);
     garden::add(&mut document);
     document.finish()
 }

@@ -1,24 +1,49 @@
-//! The table and what stands on it.
+//! A round table of turned wood.
 
-use glam::{Mat3, UVec2, Vec2, Vec3, Vec4};
+use std::f32::consts::FRAC_PI_2;
+
+use glam::{UVec2, Vec2};
 use serde_json::json;
 
 use super::glb::{Document, Magnify, Wrap};
-use super::layout::{SPHERES, TABLE_HEIGHT, TABLE_RADIUS, TEAPOT, TEAPOT_SCALE, TEAPOT_YAW, yaw};
+use super::layout::{TABLE_HEIGHT, TABLE_RADIUS};
 use super::mesh::Mesh;
-use super::paint::sin_cos;
-use super::{ceramic, materials, occlusion, shadow, teapot};
+use super::{materials, occlusion, shadow};
 
-const REPEAT: [Wrap; 2] = [Wrap::Repeat; 2];
-const CLAMP: [Wrap; 2] = [Wrap::Clamp; 2];
-
-pub(super) fn add(document: &mut Document) {
-    add_table(document);
-    add_teapot(document);
-    add_spheres(document);
+/// Materials of the table.
+struct Wood {
+    top: usize,
+    edge: usize,
+    turned: usize,
+    shadow: usize,
 }
 
-fn add_table(document: &mut Document) {
+pub(super) fn add(document: &mut Document) {
+    let wood = wood(document);
+    let (r, h) = (TABLE_RADIUS, TABLE_HEIGHT);
+    let mut board = Mesh::turned(&[&[[r - 0.025, h], [0.6 * r, h], [0.0, h]]], 96, Vec2::ONE);
+    for (uv, p) in board.uv.iter_mut().zip(&board.positions) {
+        *uv = Vec2::new(p.x, p.z) / 1.5 + 0.37;
+    }
+    let board = board.with_plan(r);
+    let mut veil = Mesh::turned(
+        &[&[[r - 0.025, h + 0.002], [0.0, h + 0.002]]],
+        96,
+        Vec2::ONE,
+    )
+    .with_plan(r);
+    veil.uv = std::mem::take(&mut veil.uv1);
+    let parts = [
+        (&board, wood.top),
+        (&rim(r, h), wood.edge),
+        (&foot(h), wood.turned),
+        (&veil, wood.shadow),
+    ];
+    let mesh = document.mesh("table", &parts);
+    document.node("table", json!({ "mesh": mesh }));
+}
+
+fn wood(document: &mut Document) -> Wood {
     let mirror = [Wrap::Mirror; 2];
     let size = UVec2::splat(512);
     let color = document.texture(
@@ -34,7 +59,7 @@ fn add_table(document: &mut Document) {
         Magnify::Linear,
     );
     let shade = occlusion::table(size / 2);
-    let shade = document.texture("table occlusion", &shade, CLAMP, Magnify::Linear);
+    let shade = document.texture("table occlusion", &shade, [Wrap::Clamp; 2], Magnify::Linear);
     let top = document.material(
         "table top",
         json!({
@@ -57,7 +82,7 @@ fn add_table(document: &mut Document) {
     // Once round the foot is the width of one board, grain upright.
     let upright = |texture: usize| {
         json!({ "index": texture, "extensions": { "KHR_texture_transform": {
-            "scale": [0.2, 1.0], "rotation": std::f32::consts::FRAC_PI_2, "offset": [0.0, 0.23],
+            "scale": [0.2, 1.0], "rotation": FRAC_PI_2, "offset": [0.0, 0.23],
         } } })
     };
     let turned = document.material(
@@ -70,12 +95,18 @@ fn add_table(document: &mut Document) {
             "normalTexture": upright(normal),
         }),
     );
-    let (r, h) = (TABLE_RADIUS, TABLE_HEIGHT);
-    let mut board = Mesh::turned(&[&[[r - 0.025, h], [0.6 * r, h], [0.0, h]]], 96, Vec2::ONE);
-    for (uv, p) in board.uv.iter_mut().zip(&board.positions) {
-        *uv = Vec2::new(p.x, p.z) / 1.5 + 0.37;
+    let shadow = document.shadow("table shadow", &shadow::table(size / 2));
+    Wood {
+        top,
+        edge,
+        turned,
+        shadow,
     }
-    let rim = Mesh::turned(
+}
+
+/// The moulding of a board of radius `r` at height `h`.
+fn rim(r: f32, h: f32) -> Mesh {
+    Mesh::turned(
         &[
             &[[0.3, h - 0.085], [r - 0.06, h - 0.085]],
             &[
@@ -93,8 +124,12 @@ fn add_table(document: &mut Document) {
         ],
         96,
         Vec2::new(0.16, 1.0),
-    );
-    let foot = Mesh::turned(
+    )
+}
+
+/// The foot under a board at height `h`.
+fn foot(h: f32) -> Mesh {
+    Mesh::turned(
         &[
             &[[0.55, 0.0], [0.56, 0.03], [0.53, 0.07]],
             &[
@@ -117,140 +152,5 @@ fn add_table(document: &mut Document) {
         ],
         48,
         Vec2::ONE,
-    );
-    let board = board.with_plan(r);
-    let dark = document.shadow("table shadow", &shadow::table(size / 2));
-    let mut veil = Mesh::turned(
-        &[&[[r - 0.025, h + 0.002], [0.0, h + 0.002]]],
-        96,
-        Vec2::ONE,
     )
-    .with_plan(r);
-    veil.uv = std::mem::take(&mut veil.uv1);
-    let mesh = document.mesh(
-        "table",
-        &[(&board, top), (&rim, edge), (&foot, turned), (&veil, dark)],
-    );
-    document.node("table", json!({ "mesh": mesh }));
-}
-
-fn add_teapot(document: &mut Document) {
-    let big = UVec2::splat(1024);
-    let small = UVec2::splat(512);
-    let mut glazed = |name: &str, color: Vec<u8>, surface: Vec<u8>, wrap: [Wrap; 2]| {
-        let color = document.texture(&format!("{name} colour"), &color, wrap, Magnify::Linear);
-        let surface = document.texture(&format!("{name} surface"), &surface, wrap, Magnify::Linear);
-        document.material(
-            name,
-            json!({
-                "pbrMetallicRoughness": {
-                    "baseColorTexture": { "index": color },
-                    "metallicRoughnessTexture": { "index": surface },
-                },
-                "occlusionTexture": { "index": surface },
-                "doubleSided": true,
-            }),
-        )
-    };
-    let wrap = [Wrap::Repeat, Wrap::Clamp];
-    let vessel = glazed(
-        "vessel",
-        ceramic::vessel_color(big),
-        ceramic::vessel_surface(small),
-        wrap,
-    );
-    let limbs = glazed(
-        "limbs",
-        ceramic::limb_color(small),
-        ceramic::limb_surface(small / 2),
-        wrap,
-    );
-    let parts = (teapot::vessel(TEAPOT_SCALE), teapot::limbs(TEAPOT_SCALE));
-    let mesh = document.mesh("teapot", &[(&parts.0, vessel), (&parts.1, limbs)]);
-    document.node(
-        "teapot",
-        json!({
-            "mesh": mesh, "translation": TEAPOT.to_array(), "rotation": yaw(TEAPOT_YAW).to_array(),
-        }),
-    );
-}
-
-fn add_spheres(document: &mut Document) {
-    let size = UVec2::splat(512);
-    let grounded = materials::grounded(UVec2::new(4, 64));
-    let grounded = document.texture("grounded", &grounded, CLAMP, Magnify::Linear);
-    let tiled = |texture: usize, s: f32, t: f32| json!({ "index": texture, "extensions": { "KHR_texture_transform": { "scale": [s, t] } } });
-
-    let hammered = materials::hammered_normal(size / 2);
-    let hammered = document.texture("hammered normal", &hammered, REPEAT, Magnify::Linear);
-    let tarnish = materials::copper_surface(size / 2);
-    let tarnish = document.texture("copper surface", &tarnish, REPEAT, Magnify::Linear);
-    let copper = document.material(
-        "hammered copper",
-        json!({
-            "pbrMetallicRoughness": {
-                "baseColorFactor": [0.86, 0.37, 0.20, 1.0],
-                "metallicRoughnessTexture": tiled(tarnish, 2.0, 1.0),
-            },
-            "normalTexture": tiled(hammered, 2.0, 1.0),
-            "occlusionTexture": { "index": grounded },
-        }),
-    );
-    let scratched = materials::scratched_normal(size);
-    let scratched = document.texture("scratched normal", &scratched, REPEAT, Magnify::Linear);
-    let steel = document.material(
-        "scratched steel",
-        json!({
-            "pbrMetallicRoughness": {
-                "baseColorFactor": [0.80, 0.81, 0.83, 1.0], "metallicFactor": 1, "roughnessFactor": 0.09,
-            },
-            "normalTexture": tiled(scratched, 3.0, 1.5),
-            "occlusionTexture": { "index": grounded },
-        }),
-    );
-    let plastic = document.material(
-        "plastic",
-        json!({
-            "pbrMetallicRoughness": { "metallicFactor": 0, "roughnessFactor": 0.12 },
-            "occlusionTexture": { "index": grounded },
-        }),
-    );
-    let names = ["copper sphere", "steel sphere", "plastic sphere"];
-    for (k, (at, radius)) in SPHERES.into_iter().enumerate() {
-        let mut ball = Mesh::sphere(Vec3::ZERO, radius, 64, 32);
-        match k {
-            2 => {
-                ball.tangents.clear();
-                ball = ball.with_colors(|p| swirl(p / radius));
-            }
-            // Tangents of the copper are made by the reader.
-            0 => ball.tangents.clear(),
-            _ => {}
-        }
-        let material = [copper, steel, plastic][k];
-        let mesh = document.mesh(names[k], &[(&ball, material)]);
-        let place = Vec3::new(at.x, TABLE_HEIGHT + radius, at.y);
-        document.node(
-            names[k],
-            json!({ "mesh": mesh, "translation": place.to_array() }),
-        );
-    }
-}
-
-/// Colours that run into each other, linear.
-fn swirl(p: Vec3) -> Vec4 {
-    let p = Mat3::from_cols(Vec3::X, Vec3::new(0.0, 0.8, 0.6), Vec3::new(0.0, -0.6, 0.8)) * p;
-    let angle = libm::atan2f(p.z, p.x) + 2.2 * p.y;
-    let palette = [
-        Vec3::new(0.90, 0.10, 0.06),
-        Vec3::new(0.95, 0.55, 0.05),
-        Vec3::new(0.05, 0.45, 0.42),
-    ];
-    let color: Vec3 = (0u8..3)
-        .map(|k| {
-            let (_, cos) = sin_cos(angle - f32::from(k) * std::f32::consts::TAU / 3.0);
-            palette[usize::from(k)] * (1.0 / 3.0 + 2.0 / 3.0 * cos).max(0.0)
-        })
-        .sum();
-    color.extend(1.0)
 }
