@@ -11,10 +11,6 @@
 //! | lantern | emission above 1, and a light inside |
 //! | sky | an unlit surface, mirrored round the horizon |
 #![expect(
-    clippy::too_many_lines,
-    reason = "a scene is a list of what stands where"
-)]
-#![expect(
     clippy::cast_possible_truncation,
     reason = "texels are bytes, and a showcase is small"
 )]
