@@ -1,5 +1,5 @@
 use glam::{DVec2, DVec4, UVec2, Vec4};
-use sampler::{AddressMode, Filter};
+use sampler::{AddressMode, Addressing, Filter, Precision};
 
 use crate::footprint::{AxisLengths, Footprint};
 use crate::probes::Probes;
@@ -24,8 +24,10 @@ pub enum MipFilter {
 /// How a pyramid is read. The default is the best this crate offers: trilinear, 16 times anisotropic, repeating.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SamplerState {
-    /// Address modes of s and of t.
-    pub address: [AddressMode; 2],
+    /// Address modes of s and of t, and the border's colour.
+    pub address: Addressing<2>,
+    /// How exactly 8-bit texels are filtered within a level.
+    pub precision: Precision,
     /// Filter where a texel covers a pixel or more (λ ≤ 0).
     pub magnify: Filter,
     /// Filter within a level where a pixel covers more than a texel (λ > 0).
@@ -40,7 +42,8 @@ pub struct SamplerState {
 impl Default for SamplerState {
     fn default() -> Self {
         Self {
-            address: [AddressMode::Repeat; 2],
+            address: Addressing::default(),
+            precision: Precision::Exact,
             magnify: Filter::Bilinear,
             minify: Filter::Bilinear,
             mip: MipFilter::Linear,
@@ -119,7 +122,7 @@ pub fn sample_with_lod(
     let levels = Levels::at(lambda, pyramid.levels(), state.mip);
 
     // A level of one texel gives that texel wherever a probe stands.
-    let bordered = state.address.contains(&AddressMode::ClampToBorder);
+    let bordered = state.address.modes.contains(&AddressMode::ClampToBorder);
     if levels.fraction == 0.0 && !bordered && pyramid.level(levels.fine).size() == UVec2::ONE {
         return (pyramid.level(levels.fine).fetch(UVec2::ZERO), levels.lod());
     }
@@ -141,7 +144,13 @@ fn followed_anisotropy(axes: &AxisLengths, max_anisotropy: f32) -> f32 {
 
 #[inline]
 fn lookup(pyramid: &Pyramid, state: &SamplerState, filter: Filter, level: u32, st: DVec2) -> Vec4 {
-    sampler::sample(pyramid.level(level), state.address, filter, st)
+    sampler::sample(
+        pyramid.level(level),
+        state.address,
+        filter,
+        state.precision,
+        st,
+    )
 }
 
 /// One stored level, or two neighbours and the weight of the coarser.

@@ -3,7 +3,7 @@
 use glam::{DVec2, UVec2, Vec2};
 use mipmap::{Content, Footprint, MipFilter, Pyramid, SamplerState};
 use proptest::prelude::*;
-use sampler::{AddressMode, Filter, Texels, Texture, Transfer};
+use sampler::{AddressMode, Filter, Precision, Texels, Texture, Transfer};
 
 /// Two derivative vectors by their ellipse: aspect, rotations on both sides, overall scale.
 #[derive(Debug, Clone, Copy)]
@@ -105,6 +105,7 @@ pub(crate) fn state() -> impl Strategy<Value = SamplerState> {
             AddressMode::Repeat,
             AddressMode::MirrorRepeat,
             AddressMode::ClampToEdge,
+            AddressMode::MirrorClampToEdge,
             AddressMode::ClampToBorder,
         ])
     };
@@ -114,15 +115,26 @@ pub(crate) fn state() -> impl Strategy<Value = SamplerState> {
         1.0..20.0f32,
         prop::sample::select(vec![1.0, 2.0, 16.0, 64.0, 0.0, f32::NAN, f32::INFINITY]),
     ];
-    (mode(), mode(), filter(), filter(), mip, anisotropy).prop_map(
-        |(s, t, magnify, minify, mip, max_anisotropy)| SamplerState {
-            address: [s, t],
-            magnify,
-            minify,
-            mip,
-            max_anisotropy,
-        },
+    let precision = prop::sample::select(vec![Precision::Exact, Precision::Fixed]);
+    (
+        mode(),
+        mode(),
+        filter(),
+        filter(),
+        mip,
+        anisotropy,
+        precision,
     )
+        .prop_map(
+            |(s, t, magnify, minify, mip, max_anisotropy, precision)| SamplerState {
+                address: [s, t].into(),
+                precision,
+                magnify,
+                minify,
+                mip,
+                max_anisotropy,
+            },
+        )
 }
 
 pub(crate) fn size() -> impl Strategy<Value = UVec2> {
