@@ -67,5 +67,6 @@ mod sample;
 
 pub use footprint::{Axes, Footprint, footprint_axes};
 pub use lod::{LOD_MAX_ABS_ERROR, LodRule, lod};
+pub use probes::ProbeWeights;
 pub use pyramid::{Content, Pyramid};
 pub use sample::{MAX_ANISOTROPY, MipFilter, SamplerState, sample, sample_with_lod};
