@@ -59,12 +59,14 @@
 #![forbid(unsafe_code)]
 
 mod downsample;
+mod ewa;
 mod footprint;
 mod lod;
 mod probes;
 mod pyramid;
 mod sample;
 
+pub use ewa::{EwaTier, ewa};
 pub use footprint::{Axes, Footprint, footprint_axes};
 pub use lod::{LOD_MAX_ABS_ERROR, LodRule, lod};
 pub use probes::ProbeWeights;

@@ -73,6 +73,7 @@ mod texel;
 mod texture;
 pub mod transfer;
 pub mod volume;
+mod weighted;
 
 pub use address::{AddressMode, Addressing};
 pub use alpha::unpremultiply;
