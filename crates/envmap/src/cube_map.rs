@@ -1,8 +1,8 @@
 use glam::{DVec3, UVec2, Vec2, Vec3};
+use mipmap::solid_angle::cube_face_solid_angles;
 
 use crate::chart::cube::{CubeFace, direction_to_cube};
 use crate::error::Error;
-use crate::solid_angle::cube_face_solid_angles;
 
 /// Values on the six faces of a cube, read without seams.
 ///

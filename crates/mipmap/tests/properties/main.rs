@@ -5,8 +5,11 @@
 )]
 
 mod anisotropic;
+mod bad_input;
+mod content;
 mod filtering;
 mod footprint;
+mod kernels;
 mod lod;
 mod oracle;
 mod pyramid;

@@ -168,6 +168,25 @@ pub(crate) fn checker(side: u32) -> Pyramid {
         made(UVec2::splat(side), 1, Transfer::Linear, Texels::F32(texels)),
         Content::Colour,
     )
+    .unwrap()
+}
+
+/// Numbers in 0..1 without a pattern, the same for a seed.
+pub(crate) struct Noise(u64);
+
+impl Noise {
+    pub(crate) fn new(seed: u64) -> Self {
+        Self(seed)
+    }
+
+    /// SplitMix64.
+    pub(crate) fn next(&mut self) -> f64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 53) as f64
+    }
 }
 
 /// Full-contrast noise without a pattern, f32, the same every time.
@@ -183,4 +202,5 @@ pub(crate) fn noise(side: u32) -> Pyramid {
         made(UVec2::splat(side), 1, Transfer::Linear, Texels::F32(texels)),
         Content::Colour,
     )
+    .unwrap()
 }
