@@ -65,7 +65,6 @@ mod prefilter;
 mod specular;
 mod studio;
 
-pub use chart::cube::{CubeFace, cube_to_direction, direction_to_cube};
 pub use chart::latlong::{direction_to_latlong_st, latlong_st_to_direction};
 pub use convert::resample_latlong_face;
 pub use cube_map::CubeMap;
@@ -75,5 +74,6 @@ pub use irradiance::{IrradianceTable, irradiance_face};
 pub use latlong::LatLong;
 pub use mipmap::solid_angle::{cube_texel_solid_angle, latlong_texel_solid_angle};
 pub use prefilter::prefilter_face;
+pub use sampler::cube::{CubeFace, cube_to_direction, direction_to_cube};
 pub use specular::SpecularTable;
 pub use studio::{studio, studio_radiance};

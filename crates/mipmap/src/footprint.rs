@@ -1,6 +1,6 @@
 use glam::{DVec2, UVec2, Vec2};
 
-use crate::lod::round_to_f32;
+use crate::lod::{LodRule, round_to_f32};
 
 /// Where a pixel looks in a texture, and how far its neighbours look.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -116,6 +116,29 @@ impl AxisLengths {
             scale,
             a,
             b,
+        }
+    }
+
+    /// The axes by `rule`; by [`LodRule::MaxLength`] the two derivative vectors themselves.
+    #[inline]
+    pub(crate) fn by_rule(size: UVec2, dst_dx: Vec2, dst_dy: Vec2, rule: LodRule) -> Self {
+        let exact = Self::of(size, dst_dx, dst_dy);
+        if rule == LodRule::Exact || exact.major.is_infinite() {
+            return exact;
+        }
+        let [x, y] = [exact.a.length(), exact.b.length()];
+        let (long, [major, minor]) = if x >= y {
+            (exact.a, [x, y])
+        } else {
+            (exact.b, [y, x])
+        };
+        // The longer vector alone gives the direction.
+        Self {
+            major: round_to_f32(major),
+            minor: round_to_f32(minor),
+            a: long,
+            b: DVec2::ZERO,
+            ..exact
         }
     }
 

@@ -58,16 +58,23 @@
 //! McCormack et al. 1999, "Feline"; Vulkan 1.3, "Image Operations".
 #![forbid(unsafe_code)]
 
+mod axis_box;
 mod error;
 mod footprint;
 mod lod;
 mod probes;
 pub mod pyramid;
+mod rip_map;
+mod runs;
 mod sample;
 pub mod solid_angle;
+mod summed_area;
 
 pub use error::Error;
 pub use footprint::{Axes, Footprint, footprint_axes};
 pub use lod::{LOD_MAX_ABS_ERROR, LodRule, lod};
+pub use probes::ProbeWeights;
 pub use pyramid::{Content, Pyramid};
+pub use rip_map::RipMap;
 pub use sample::{MAX_ANISOTROPY, MipFilter, SamplerState, sample, sample_with_lod};
+pub use summed_area::SummedArea;

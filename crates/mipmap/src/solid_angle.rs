@@ -72,7 +72,7 @@ pub(crate) fn polar_band(rows: u32, low: f64, high: f64) -> f64 {
 /// Solid angles of up to three rectangles side by side, one below the other, on a cube's face.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct SphereColumn {
-    size: u32,
+    columns: u32,
     /// Their four horizontal edges on \[−1, 1\].
     ys: [f64; 4],
     x: f64,
@@ -81,11 +81,11 @@ pub(crate) struct SphereColumn {
 }
 
 impl SphereColumn {
-    /// `edges`: horizontal ones, in texels of a face of `size`². Begins at the face's left edge.
-    pub(crate) fn of_face(size: u32, edges: [f64; 4]) -> Self {
-        let ys = edges.map(|edge| 2.0 * edge / f64::from(size) - 1.0);
+    /// `edges`: horizontal ones, in texels of a face of `size`. Begins at the face's left edge.
+    pub(crate) fn of_face(size: UVec2, edges: [f64; 4]) -> Self {
+        let ys = edges.map(|edge| 2.0 * edge / f64::from(size.y) - 1.0);
         Self {
-            size,
+            columns: size.x,
             ys,
             x: -1.0,
             corners: ys.map(|y| corner(-1.0, y)),
@@ -94,7 +94,7 @@ impl SphereColumn {
 
     /// Moves on to a vertical edge; the solid angles of the rectangles up to there.
     pub(crate) fn advance_to(&mut self, edge: f64) -> [f64; 3] {
-        let x = 2.0 * edge / f64::from(self.size) - 1.0;
+        let x = 2.0 * edge / f64::from(self.columns) - 1.0;
         if x == self.x {
             return [0.0; 3];
         }

@@ -168,7 +168,7 @@ fn windows(
         _ => vertical,
     };
     // On a cube the weights do not separate. Neighbouring windows share an edge, whose corners are kept.
-    let mut column = SphereColumn::of_face(size.y, vertical.edges);
+    let mut column = SphereColumn::of_face(size, vertical.edges);
     move |i| {
         let horizontal = Taps::of(size.x, target.x, i);
         let mut weights = vertical

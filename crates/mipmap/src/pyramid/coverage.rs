@@ -4,6 +4,7 @@
 //! a₁ ≥ a₂ ≥ …, any scale in \[τ/aₙ, τ/aₙ₊₁) draws exactly n texels; the one nearest to 1 is taken. τ is where
 //! stored codes change sides: half a code below the least code that is drawn.
 
+use half::f16;
 use sampler::{Component, Texture};
 
 /// Where alpha changes sides, once stored.
@@ -23,6 +24,9 @@ impl Cutoff {
         let codes = match component {
             Component::U8 => 255.0,
             Component::U16 => 65535.0,
+            Component::F16 => {
+                return (cutoff > 0.0).then(|| Self::stored_f16(cutoff));
+            }
             Component::F32 => {
                 return (cutoff > 0.0).then(|| Self {
                     drawn: cutoff,
@@ -42,6 +46,20 @@ impl Cutoff {
             hidden: alpha(code - 1.0),
             between: (code - 0.5) / codes,
         })
+    }
+
+    fn stored_f16(cutoff: f32) -> Self {
+        let nearest = f16::from_f32(cutoff);
+        let below = nearest.to_f32() < cutoff;
+        // Positive floats are in the order of their bits.
+        let drawn =
+            f16::from_bits(nearest.to_bits() + u16::from(below)).max(f16::MIN_POSITIVE_SUBNORMAL);
+        let [drawn, hidden] = [drawn, f16::from_bits(drawn.to_bits() - 1)].map(f16::to_f32);
+        Self {
+            drawn,
+            hidden,
+            between: 0.5 * (f64::from(drawn) + f64::from(hidden)),
+        }
     }
 
     /// The share of a texture's texels that are drawn. Its last channel is alpha.

@@ -73,10 +73,10 @@ impl Iterator for Levels<'_> {
     fn next(&mut self) -> Option<Texture> {
         self.remaining = self.remaining.checked_sub(1)?;
         let target = halved(self.size);
-        let next = match &self.linear {
-            None => self.reduction.first(self.texture, target),
-            Some(linear) => self.reduction.next(self.size, target, linear),
-        };
+        let linear = self.linear.as_deref();
+        let next = self
+            .reduction
+            .reduce(self.texture, linear, self.size, target);
         self.size = target;
         let level = self.reduction.store(target, &next);
         self.linear = Some(next);
@@ -150,19 +150,23 @@ impl Reduction {
         })
     }
 
-    /// The level after the texture itself, unrounded.
-    pub(crate) fn first(&self, texture: &Texture, target: UVec2) -> Vec<f32> {
-        self.reduce(texture.size(), target, |j, row| {
-            self.read_row(texture, j, row);
-        })
-    }
-
-    /// The level after one whose unrounded texels are `linear`.
-    pub(crate) fn next(&self, size: UVec2, target: UVec2, linear: &[f32]) -> Vec<f32> {
+    /// The unrounded texels of a level of `target` texels, each side that of `size` or half as long.
+    ///
+    /// Made from `linear`, the unrounded texels of a level of `size`; `None` is `texture` itself.
+    pub(crate) fn reduce(
+        &self,
+        texture: &Texture,
+        linear: Option<&[f32]>,
+        size: UVec2,
+        target: UVec2,
+    ) -> Vec<f32> {
         let row_length = size.x as usize * self.method.channels;
-        self.reduce(size, target, |j, row| {
-            row.copy_from_slice(&linear[j as usize * row_length..][..row_length]);
-        })
+        match linear {
+            None => self.reduce_rows(size, target, |j, row| self.read_row(texture, j, row)),
+            Some(linear) => self.reduce_rows(size, target, |j, row| {
+                row.copy_from_slice(&linear[j as usize * row_length..][..row_length]);
+            }),
+        }
     }
 
     /// A level as it is kept: in the format of level 0.
@@ -198,7 +202,7 @@ impl Reduction {
         self.options.schedule.store(size, self.texture, &linear)
     }
 
-    fn reduce(
+    fn reduce_rows(
         &self,
         size: UVec2,
         target: UVec2,
@@ -253,7 +257,7 @@ fn method(format: sampler::Format, content: Content, chart: Option<EnvironmentCh
         },
         arithmetic: match format.component {
             Component::U8 | Component::U16 => Arithmetic::UnitRange,
-            Component::F32 => Arithmetic::AnyRange,
+            Component::F16 | Component::F32 => Arithmetic::AnyRange,
         },
         chart,
     }

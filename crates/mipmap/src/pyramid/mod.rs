@@ -23,6 +23,7 @@ use bounds::Bounds;
 pub use content::{Content, EnvironmentChart};
 pub use kernel::Kernel;
 pub use levels::Levels;
+pub(crate) use levels::Reduction;
 pub use rows::Schedule;
 
 /// Bound of what a wide kernel does to the mean from one level to the next, relative to the greatest |texel|, for

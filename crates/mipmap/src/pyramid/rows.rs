@@ -94,6 +94,7 @@ fn joined(size: UVec2, format: Format, strips: &[Texture]) -> Texture {
     let texels = match format.component {
         sampler::Component::U8 => gathered!(U8),
         sampler::Component::U16 => gathered!(U16),
+        sampler::Component::F16 => gathered!(F16),
         sampler::Component::F32 => gathered!(F32),
     };
     Texture::new(size, format.channels, format.transfer, texels)

@@ -13,4 +13,6 @@ mod kernels;
 mod lod;
 mod oracle;
 mod pyramid;
+mod rip_map;
 mod strategies;
+mod summed_area;
