@@ -1,4 +1,4 @@
-use glam::{DVec2, UVec2, Vec2};
+use glam::{DMat2, DVec2, UVec2, Vec2};
 
 use crate::lod::{LodRule, round_to_f32};
 
@@ -146,6 +146,24 @@ impl AxisLengths {
     #[inline]
     pub(crate) fn anisotropy(&self) -> f32 {
         aspect(self.major, self.minor)
+    }
+
+    /// J Jᵀ in texels², its minor axis widened to `minor`. Finite axes only.
+    pub(crate) fn covariance(&self, minor: f32) -> DMat2 {
+        let column = |v: DVec2| DMat2::from_cols(v * v.x, v * v.y);
+        let across = major_direction(self.a, self.b).perp();
+        let [wanted, actual] = [minor, self.minor].map(|axis| f64::from(axis) * f64::from(axis));
+        column(self.a) + column(self.b) + column(across) * (wanted - actual).max(0.0)
+    }
+
+    /// Both axes from end to end, in st, the shorter widened to `minor`. Finite axes only.
+    pub(crate) fn axes(&self, minor: f32) -> [DVec2; 2] {
+        let along = major_direction(self.a, self.b);
+        let minor = f64::from(minor.max(self.minor));
+        [
+            along * f64::from(self.major) / self.scale,
+            along.perp() * minor / self.scale,
+        ]
     }
 
     /// The longer axis from end to end, in st.

@@ -60,6 +60,7 @@
 
 mod axis_box;
 mod error;
+mod ewa;
 mod footprint;
 mod lod;
 mod probes;
@@ -68,13 +69,16 @@ mod rip_map;
 mod runs;
 mod sample;
 pub mod solid_angle;
+mod stochastic;
 mod summed_area;
 
 pub use error::Error;
+pub use ewa::{EwaTier, ewa};
 pub use footprint::{Axes, Footprint, footprint_axes};
 pub use lod::{LOD_MAX_ABS_ERROR, LodRule, lod};
 pub use probes::ProbeWeights;
 pub use pyramid::{Content, Pyramid};
 pub use rip_map::RipMap;
 pub use sample::{MAX_ANISOTROPY, MipFilter, SamplerState, sample, sample_with_lod};
+pub use stochastic::{blue_noise, stochastic};
 pub use summed_area::SummedArea;
