@@ -71,6 +71,7 @@ mod image;
 mod non_finite;
 mod texel;
 mod texture;
+pub mod tile;
 pub mod transfer;
 pub mod volume;
 mod weighted;

@@ -16,5 +16,6 @@ mod oracle;
 mod pick;
 mod storage;
 mod strategies;
+mod tile;
 mod transfer;
 mod volume;
