@@ -76,6 +76,7 @@ mod non_finite;
 pub mod solid;
 mod texel;
 mod texture;
+pub mod tile;
 pub mod transfer;
 pub mod volume;
 mod weighted;

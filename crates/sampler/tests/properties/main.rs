@@ -18,5 +18,6 @@ mod solid_noise;
 mod solid_regular;
 mod storage;
 mod strategies;
+mod tile;
 mod transfer;
 mod volume;

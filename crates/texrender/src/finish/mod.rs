@@ -4,6 +4,7 @@ mod aov;
 mod encode;
 mod exr;
 mod replace;
+mod texture;
 mod tonemap;
 
 use std::path::Path;
@@ -15,6 +16,7 @@ use crate::render::Film;
 use crate::settings::{Aov, Background};
 pub use encode::{BitDepth, FileFormat};
 pub use replace::check_folder;
+pub use texture::{check_holds_texture, save_texture};
 pub use tonemap::ToneMap;
 
 /// How a film becomes a picture.

@@ -5,6 +5,7 @@ mod inspect;
 mod progress;
 mod render;
 mod stats;
+mod tile;
 mod values;
 
 use std::process::ExitCode;
@@ -18,6 +19,7 @@ fn main() -> ExitCode {
     let done = match Cli::parse().command {
         Command::Render(args) => render::run(&args),
         Command::Inspect(args) => inspect::run(&args),
+        Command::Tile(args) => tile::run(&args),
     };
     match done {
         Ok(()) => ExitCode::SUCCESS,
