@@ -15,6 +15,8 @@ use crate::render::Film;
 use crate::settings::{Aov, Background};
 pub use encode::{BitDepth, FileFormat};
 pub use replace::check_folder;
+#[cfg(feature = "frontier")]
+pub(crate) use replace::replace;
 pub use tonemap::ToneMap;
 
 /// How a film becomes a picture.

@@ -1,6 +1,7 @@
 //! The program: textured pictures of 3D scenes on a machine without a GPU.
 
 mod args;
+mod frontier;
 mod inspect;
 mod progress;
 mod render;
@@ -18,6 +19,7 @@ fn main() -> ExitCode {
     let done = match Cli::parse().command {
         Command::Render(args) => render::run(&args),
         Command::Inspect(args) => inspect::run(&args),
+        Command::Frontier(args) => frontier::run(&args),
     };
     match done {
         Ok(()) => ExitCode::SUCCESS,

@@ -1,0 +1,108 @@
+//! How long lookups and frames take, all filters in turn so that a busy moment hits all alike.
+
+use std::time::Instant;
+
+use glam::{UVec2, Vec4};
+use mipmap::Footprint;
+
+use super::filters::FilterSetting;
+use super::frame;
+use super::scene::Scene;
+
+/// How much time is spent on times.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct TimingEffort {
+    /// Lookups of one pass, about; whole rows of the frame.
+    pub lookups: usize,
+    /// Passes over all filters; the best counts.
+    pub passes: u32,
+    /// Frames of a filter, at most; their median counts.
+    pub frames: u32,
+    /// Seconds after which a filter draws no more frames.
+    pub frame_seconds: f64,
+}
+
+/// Nanoseconds of a lookup by each filter: one thread, consecutive pixels of rows spread over the frame, footprints
+/// ready; the best of `passes` after one to warm up.
+pub(super) fn nanoseconds_per_lookup(
+    filters: &[FilterSetting<'_>],
+    scene: &Scene,
+    effort: &TimingEffort,
+) -> Vec<f64> {
+    let footprints = rows_of_footprints(scene, effort.lookups);
+    let mut colours = vec![Vec4::ZERO; footprints.len()];
+    let mut best = vec![f64::INFINITY; filters.len()];
+    for pass in 0..=effort.passes {
+        for (filter, best) in filters.iter().zip(&mut best) {
+            let start = Instant::now();
+            (filter.lookup)(&footprints, std::hint::black_box(&mut colours));
+            let seconds = start.elapsed().as_secs_f64();
+            if pass > 0 || effort.passes == 0 {
+                *best = best.min(seconds * 1e9 / footprints.len().max(1) as f64);
+            }
+        }
+    }
+    best
+}
+
+/// Milliseconds of a frame by each filter, on the current pool: the median of up to `frames`.
+pub(super) fn milliseconds_per_frame(
+    filters: &[FilterSetting<'_>],
+    scene: &Scene,
+    effort: &TimingEffort,
+) -> Vec<f64> {
+    let mut picture = vec![[0; 4]; (scene.size.x * scene.size.y) as usize];
+    let mut times: Vec<Vec<f64>> = vec![Vec::new(); filters.len()];
+    for _ in 0..effort.frames.max(1) {
+        for (filter, times) in filters.iter().zip(&mut times) {
+            if times.iter().sum::<f64>() > effort.frame_seconds * 1e3 {
+                continue;
+            }
+            let start = Instant::now();
+            frame::draw(scene, &filter.lookup, std::hint::black_box(&mut picture));
+            times.push(start.elapsed().as_secs_f64() * 1e3);
+        }
+    }
+    times.into_iter().map(median).collect()
+}
+
+/// Footprints of whole rows, `count` or a little more.
+fn rows_of_footprints(scene: &Scene, count: usize) -> Vec<Footprint> {
+    let rows: Vec<Vec<Footprint>> = (0..scene.size.y)
+        .map(|y| {
+            (0..scene.size.x)
+                .filter_map(|x| scene.footprint(UVec2::new(x, y)))
+                .map(|footprint| footprint.rounded())
+                .collect()
+        })
+        .filter(|row: &Vec<Footprint>| !row.is_empty())
+        .collect();
+    let total: usize = rows.iter().map(Vec::len).sum();
+    let stride = (total / count.max(1)).max(1);
+    // From the middle of the first stride, so that the horizon is not counted too often.
+    rows.into_iter()
+        .skip(stride / 2)
+        .step_by(stride)
+        .flatten()
+        .collect()
+}
+
+fn median(mut times: Vec<f64>) -> f64 {
+    times.sort_by(f64::total_cmp);
+    times[times.len() / 2]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rows_are_spread_over_the_plane() {
+        let scene = Scene::named("plane").unwrap();
+        let footprints = rows_of_footprints(&scene, 20_000);
+        assert!((16_000..30_000).contains(&footprints.len()));
+        let longest = |f: &Footprint| f.dst_dy.length() * 1024.0;
+        assert!(footprints.iter().any(|f| longest(f) < 2.0));
+        assert!(footprints.iter().any(|f| longest(f) > 100.0));
+    }
+}
