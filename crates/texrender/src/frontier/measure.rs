@@ -13,59 +13,67 @@ use super::reference::{Reference, SampleCount, reference};
 use super::scene::Scene;
 use super::table::{Errors, Row};
 use super::texture::TestTexture;
-use super::timing::{TimingEffort, milliseconds_per_frame, nanoseconds_per_lookup};
+use super::timing::{Times, TimingEffort};
 
 /// How much work a measurement is.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Effort {
     /// Of the pixels that a scene takes errors at, every so many-th each way; at least 1.
     pub thinning: u32,
-    /// Samples of the reference.
+    /// Samples of the references that errors are taken against.
     pub samples: SampleCount,
     /// Computed textures of a scene, at most.
     pub textures: usize,
     /// Times.
     pub timing: TimingEffort,
-    /// Whether crops are made.
+    /// Crops.
     pub crops: Crops,
 }
 
 /// Whether crops are made.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Crops {
-    /// All of a scene's.
-    Made,
+    /// All of a scene's, their references with so many samples.
+    Made(SampleCount),
     /// None.
     LeftOut,
 }
 
 impl Effort {
-    /// For a result in a minute or two: a quarter of the pixels, at most two textures a scene, fewer frames.
+    /// For a result in a minute or two: a ninth of the pixels, at most two textures a scene, fewer frames.
     pub const QUICK: Self = Self {
-        thinning: 2,
-        samples: SampleCount { factor: 1 },
+        thinning: 3,
+        samples: SampleCount {
+            strata: [16, 32, 64],
+        },
         textures: 2,
         timing: TimingEffort {
             lookups: 16_000,
             passes: 5,
             frames: 5,
-            frame_seconds: 0.15,
+            frame_seconds: 0.1,
         },
-        crops: Crops::Made,
+        crops: Crops::Made(SampleCount {
+            strata: [8, 16, 32],
+        }),
     };
 
     /// For figures to quote: all pixels, four times the samples.
     pub const FULL: Self = Self {
         thinning: 1,
-        samples: SampleCount { factor: 2 },
+        samples: SampleCount {
+            strata: [32, 64, 128],
+        },
         textures: usize::MAX,
         timing: TimingEffort {
             lookups: 48_000,
-            passes: 9,
+            passes: 11,
             frames: 15,
-            frame_seconds: 1.0,
+            frame_seconds: 1.5,
         },
-        crops: Crops::Made,
+        crops: Crops::Made(SampleCount {
+            strata: [16, 32, 64],
+        }),
     };
 }
 
@@ -89,13 +97,16 @@ pub struct Sheet {
 }
 
 /// Measures every filter on `scene` with `texture`, on the current pool.
+///
+/// `known`: times of the same filters on the same scene with another texture of the same size.
 pub(super) fn sheet(
     scene: &Scene,
     texture: &TestTexture,
-    prepared: &Prepared,
     effort: &Effort,
-) -> Sheet {
-    let filters = filter_settings(prepared);
+    known: Option<Times>,
+) -> (Sheet, Times) {
+    let prepared = Prepared::new(texture);
+    let filters = filter_settings(&prepared);
     let pixels = scene.error_pixels(effort.thinning);
     let footprints: Vec<Footprint> = pixels
         .iter()
@@ -116,21 +127,18 @@ pub(super) fn sheet(
         }
     }
 
-    // Times, with nothing else going on.
-    let nanoseconds = nanoseconds_per_lookup(&filters, scene, &effort.timing);
-    let milliseconds = milliseconds_per_frame(&filters, scene, &effort.timing);
-
+    let times = known.unwrap_or_else(|| Times::measure(&filters, scene, &effort.timing));
     let row = |index: usize, (kernel, errors): &(&'static str, Errors)| Row {
         filter: filters[index].filter.clone(),
         setting: filters[index].setting.clone(),
         scene: scene.name.to_owned(),
         texture: texture.name.clone(),
         kernel: (*kernel).to_owned(),
-        ns_per_lookup: nanoseconds[index],
-        ms_per_frame: milliseconds[index],
+        ns_per_lookup: times.nanoseconds_per_lookup[index],
+        ms_per_frame: times.milliseconds_per_frame[index],
         errors: *errors,
     };
-    Sheet {
+    let sheet = Sheet {
         scene: scene.clone(),
         texture: texture.name.clone(),
         pixels: pixels.len(),
@@ -142,10 +150,11 @@ pub(super) fn sheet(
             .map(|(k, errors)| row(k / KERNELS.len(), errors))
             .collect(),
         crops: match effort.crops {
-            Crops::Made => crop_sets(scene, texture, &filters, effort.samples),
+            Crops::Made(samples) => crop_sets(scene, texture, &filters, samples),
             Crops::LeftOut => Vec::new(),
         },
-    }
+    };
+    (sheet, times)
 }
 
 /// Kernels as the table names them.

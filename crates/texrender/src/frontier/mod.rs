@@ -40,6 +40,8 @@ mod table;
 mod texture;
 mod timing;
 
+use glam::UVec2;
+
 pub use crops::{CropSet, FULL_SCALE_ERROR, FilterCrop, Picture};
 pub use filters::{FilterSetting, Lookup, Prepared, filter_settings};
 pub use frame::{CLEAR, draw};
@@ -52,6 +54,7 @@ pub use save::make_folder;
 pub use scene::{CROP_SIZE, Crop, ExactFootprint, Homography, Lattice, Scene, SceneTextures};
 pub use table::{COLUMNS, Errors, Row, from_csv, to_csv};
 pub use texture::{Channels, TestTexture};
+use timing::Times;
 pub use timing::TimingEffort;
 
 /// What to measure.
@@ -85,15 +88,23 @@ pub struct Frontier {
 /// `progress` is told what is next and the share that is done, 0..=1.
 pub fn measure(options: &Options, progress: &dyn Fn(&str, f32)) -> Frontier {
     let work = work(options);
+    // No filter looks at what a texel is: times of one texture are those of all of its size.
+    let mut known: Vec<(&str, UVec2, Times)> = Vec::new();
     let sheets = work.iter().enumerate().map(|(done, (scene, texture))| {
         progress(
             &format!("{} {}", scene.name, texture.name),
             done as f32 / work.len() as f32,
         );
-        measure::sheet(scene, texture, &Prepared::new(texture), &options.effort)
+        let key = (scene.name, texture.size);
+        let times = known.iter().find(|(name, size, _)| (*name, *size) == key);
+        let times = times.map(|(.., times)| times.clone());
+        let (sheet, times) = measure::sheet(scene, texture, &options.effort, times);
+        known.push((key.0, key.1, times));
+        sheet
     });
+    let sheets = sheets.collect();
     Frontier {
-        sheets: sheets.collect(),
+        sheets,
         effort: options.effort,
         threads: rayon::current_num_threads(),
         peers: options.peers.clone(),

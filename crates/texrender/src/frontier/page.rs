@@ -72,7 +72,8 @@ fn introduction(frontier: &Frontier, command: &str) -> String {
          rounding to 8 bits.</li>\n\
          <li>Time a lookup: one thread, consecutive pixels of rows spread over the frame, footprints ready, the best of \
          {passes} passes over all filters. Time a frame: {threads} threads; clear, footprint of each pixel, lookup, \
-         store; the median of up to {frames} frames, fewer for slow filters.</li>\n\
+         store; the median of up to {frames} frames, fewer for slow filters. Both are taken with a scene’s first texture \
+         of a size and hold for the others, since no filter looks at what a texel is.</li>\n\
          <li>Textures are 8-bit RGBA, linear, repeated; coarser levels by the box.</li>\n</ul>\n",
         legend = legend(frontier),
         kernels = kernels(),
@@ -157,11 +158,11 @@ fn plots(frontier: &Frontier) -> String {
         if let Some(chart) = sheet.peers_chart(&frontier.peers, frontier.threads) {
             text += &figure(&chart);
         }
-        push(&mut text, format_args!("<div class=\"pair\">\n"));
+        text += "<details><summary>Against a Gaussian pixel, and against each filter’s own kernel</summary>\n";
         for chart in others {
             text += &figure(chart);
         }
-        text += "</div>\n";
+        text += "</details>\n";
     }
     text
 }

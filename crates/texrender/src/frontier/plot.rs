@@ -170,14 +170,17 @@ impl Plot {
             .caption(&self.title, caption)
             .x_label_area_size(BELOW)
             .y_label_area_size(LEFT)
-            .build_cartesian_2d(times.log_scale(), errors.log_scale())?;
+            .build_cartesian_2d(
+                times.clone().log_scale().with_key_points(ticks(&times)),
+                errors.clone().log_scale().with_key_points(ticks(&errors)),
+            )?;
         chart
             .configure_mesh()
             .bold_line_style(FAINT)
             .light_line_style(TRANSPARENT)
             .axis_style(QUIET)
-            .x_labels(12)
-            .y_labels(12)
+            .x_labels(20)
+            .y_labels(20)
             .x_label_formatter(&|x| number(*x))
             .y_label_formatter(&|y| number(*y))
             .label_style(("sans-serif", 13).into_font().color(&INK))
@@ -209,25 +212,52 @@ impl Plot {
         Ok(())
     }
 
+    /// Indices of the points on our front, and on each peer's.
+    fn fronts(&self, shown: &[(f64, f64)]) -> (Vec<usize>, Vec<(Family, Vec<usize>)>) {
+        let front_of = |is_in: &dyn Fn(Family) -> bool| -> Vec<usize> {
+            let among: Vec<usize> = (0..shown.len())
+                .filter(|&k| is_in(self.points[k].family))
+                .collect();
+            let points: Vec<(f64, f64)> = among.iter().map(|&k| shown[k]).collect();
+            pareto_front(&points)
+                .into_iter()
+                .map(|k| among[k])
+                .collect()
+        };
+        let is_peer = |family: Family| matches!(family, Family::Peer(_));
+        let mut peers: Vec<Family> = self.points.iter().map(|point| point.family).collect();
+        peers.retain(|family| is_peer(*family));
+        peers.dedup();
+        let peers = peers
+            .into_iter()
+            .map(|peer| (peer, front_of(&|family| family == peer)));
+        (front_of(&|family| !is_peer(family)), peers.collect())
+    }
+
     fn draw_labels(&self, area: &Area<'_>, points: &[(i32, i32)], within: Rectangle) -> Drawn<()> {
         let texts: Vec<String> = self.points.iter().map(|p| p.label.clone()).collect();
         let places = labels::place(points, &texts, within);
-        for ((point, place), text) in points.iter().zip(places).zip(&texts) {
+        for (k, place) in places.into_iter().enumerate() {
             let Some([left, top, right, bottom]) = place else {
                 continue;
+            };
+            let point = points[k];
+            let colour = match self.points[k].family {
+                Family::Peer(_) => QUIET,
+                _ => INK,
             };
             // A line to labels that stand away.
             let near = (point.0.clamp(left, right), point.1.clamp(top, bottom));
             let (dx, dy) = (near.0 - point.0, near.1 - point.1);
             if dx * dx + dy * dy > 12 * 12 {
-                area.draw(&PathElement::new(vec![*point, near], QUIET.mix(0.6)))?;
+                area.draw(&PathElement::new(vec![point, near], QUIET.mix(0.6)))?;
             }
             let style = ("sans-serif", 12)
                 .into_font()
-                .color(&INK)
+                .color(&colour)
                 .pos(Pos::new(HPos::Center, VPos::Center));
             let middle = ((left + right) / 2, (top + bottom) / 2);
-            area.draw(&Text::new(text.clone(), middle, style))?;
+            area.draw(&Text::new(texts[k].clone(), middle, style))?;
         }
         Ok(())
     }
@@ -255,6 +285,27 @@ fn range(values: impl Iterator<Item = f64>) -> std::ops::Range<f64> {
     // A fortieth of the way, and at least a fifth more, so that labels have room.
     let room = (high / low).powf(0.06).max(1.25);
     low / room..high * room
+}
+
+/// Round numbers in `range`, more of them in a decade where it spans few.
+fn ticks(range: &std::ops::Range<f64>) -> Vec<f64> {
+    const STEPS: [&[f64]; 4] = [
+        &[1.0, 1.2, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0],
+        &[1.0, 1.5, 2.0, 3.0, 5.0, 7.0],
+        &[1.0, 2.0, 5.0],
+        &[1.0],
+    ];
+    let decades = (range.end / range.start).log10();
+    let steps = match decades {
+        d if d < 0.7 => STEPS[0],
+        d if d < 1.5 => STEPS[1],
+        d if d < 4.0 => STEPS[2],
+        _ => STEPS[3],
+    };
+    (-12..12)
+        .flat_map(|power| steps.iter().map(move |step| step * 10f64.powi(power)))
+        .filter(|tick| range.contains(tick))
+        .collect()
 }
 
 /// As short as tells ticks apart.
@@ -304,6 +355,14 @@ mod tests {
         .to_svg();
         for text in ["nearest", "aniso16", "a &amp; b"] {
             assert!(svg.contains(text), "{text} in {svg}");
+        }
+    }
+
+    #[test]
+    fn every_span_has_a_few_ticks() {
+        for (low, high) in [(8.0, 14.0), (0.009, 0.3), (10.0, 9000.0), (9e-6, 0.6)] {
+            let count = ticks(&(low..high)).len();
+            assert!((3..=14).contains(&count), "{low}..{high}: {count}");
         }
     }
 

@@ -14,9 +14,6 @@ use super::texture::{Channels, TestTexture};
 /// Pixels that one task works on.
 const TASK: usize = 64;
 
-/// Strata along an edge of a pixel for footprints under 8, under 64, and from 64 texels in length.
-const STRATA: [u32; 3] = [16, 32, 64];
-
 /// The mean of a texture under a kernel, at some pixels.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Reference {
@@ -32,19 +29,19 @@ pub struct Reference {
 /// How many samples a pixel gets.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct SampleCount {
-    /// Factor on the 16, 32 or 64 strata along a pixel's edge, at least 1.
-    pub factor: u32,
+    /// Cells along an edge of the grid over a pixel whose footprint is under 8, under 64, and from 64 texels in
+    /// length; each even, at least 2, at most 1024.
+    pub strata: [u32; 3],
 }
 
 impl SampleCount {
     /// Samples of a pixel whose footprint is under 8, under 64, and from 64 texels in length.
     pub fn per_pixel(self) -> [u32; 3] {
-        STRATA.map(|strata| (strata * self.factor.max(1)).pow(2))
+        self.strata.map(|strata| strata * strata)
     }
 
     fn strata(self, length_texels: f64) -> u32 {
-        let class = usize::from(length_texels >= 8.0) + usize::from(length_texels >= 64.0);
-        STRATA[class] * self.factor.max(1)
+        self.strata[usize::from(length_texels >= 8.0) + usize::from(length_texels >= 64.0)]
     }
 }
 
@@ -278,7 +275,9 @@ fn whole(k: f64) -> u32 {
 mod tests {
     use super::*;
 
-    const SAMPLES: SampleCount = SampleCount { factor: 1 };
+    const SAMPLES: SampleCount = SampleCount {
+        strata: [16, 32, 64],
+    };
 
     fn zone_of(size: UVec2, code: impl Fn(u32, u32) -> u8) -> TestTexture {
         TestTexture {
@@ -384,8 +383,11 @@ mod tests {
         let checker = TestTexture::computed("checker").unwrap();
         let pixels: Vec<UVec2> = (0..300).map(|k| UVec2::new(k, 20)).collect();
         let target = Target::bilinear(PixelKernel::Box);
-        let few = reference(&scene, &checker, &pixels, target, SampleCount { factor: 1 });
-        let many = reference(&scene, &checker, &pixels, target, SampleCount { factor: 3 });
+        let few = reference(&scene, &checker, &pixels, target, SAMPLES);
+        let threefold = SampleCount {
+            strata: SAMPLES.strata.map(|n| 3 * n),
+        };
+        let many = reference(&scene, &checker, &pixels, target, threefold);
         let squares: f64 = few
             .values
             .iter()

@@ -37,8 +37,9 @@ impl Homography {
     pub fn footprint(&self, at: DVec2) -> Option<ExactFootprint> {
         let p = self.0 * at.extend(1.0);
         if p.z > 0.0 {
-            let st = p.truncate() / p.z;
-            let slope = |column: DVec3| (column.truncate() - st * column.z) / p.z;
+            let inverse = 1.0 / p.z;
+            let st = p.truncate() * inverse;
+            let slope = |column: DVec3| (column.truncate() - st * column.z) * inverse;
             Some(ExactFootprint {
                 st,
                 dst_dx: slope(self.0.x_axis),
@@ -120,7 +121,7 @@ pub struct Scene {
     pub lattice: Lattice,
     /// What it is drawn with.
     pub textures: SceneTextures,
-    /// Parts to look at.
+    /// Parts to look at, if any.
     pub crops: Vec<Crop>,
 }
 
@@ -136,6 +137,13 @@ impl Scene {
             fill("fill_min4", 4.0),
             fill("fill_min3", 3.0),
         ]
+    }
+
+    /// Those of a quick run: all but `fill_min4`, whose level is a whole one.
+    pub fn quick() -> Vec<Self> {
+        let mut scenes = Self::all();
+        scenes.retain(|scene| scene.name != "fill_min4");
+        scenes
     }
 
     /// The scene called `name`.
@@ -314,7 +322,7 @@ fn fill(name: &'static str, scale: f64) -> Scene {
             margin: [IVec2::ZERO, IVec2::ONE],
         },
         textures: SceneTextures::Open(&["noise"]),
-        crops: crops(&[("part", 880, 480)]),
+        crops: Vec::new(),
     }
 }
 

@@ -22,9 +22,30 @@ pub struct TimingEffort {
     pub frame_seconds: f64,
 }
 
+/// Times of each filter on one scene.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Times {
+    pub(super) nanoseconds_per_lookup: Vec<f64>,
+    pub(super) milliseconds_per_frame: Vec<f64>,
+}
+
+impl Times {
+    /// Measures them; nothing else should be going on.
+    pub(super) fn measure(
+        filters: &[FilterSetting<'_>],
+        scene: &Scene,
+        effort: &TimingEffort,
+    ) -> Self {
+        Self {
+            nanoseconds_per_lookup: nanoseconds_per_lookup(filters, scene, effort),
+            milliseconds_per_frame: milliseconds_per_frame(filters, scene, effort),
+        }
+    }
+}
+
 /// Nanoseconds of a lookup by each filter: one thread, consecutive pixels of rows spread over the frame, footprints
 /// ready; the best of `passes` after one to warm up.
-pub(super) fn nanoseconds_per_lookup(
+fn nanoseconds_per_lookup(
     filters: &[FilterSetting<'_>],
     scene: &Scene,
     effort: &TimingEffort,
@@ -46,7 +67,7 @@ pub(super) fn nanoseconds_per_lookup(
 }
 
 /// Milliseconds of a frame by each filter, on the current pool: the median of up to `frames`.
-pub(super) fn milliseconds_per_frame(
+fn milliseconds_per_frame(
     filters: &[FilterSetting<'_>],
     scene: &Scene,
     effort: &TimingEffort,

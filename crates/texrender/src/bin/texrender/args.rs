@@ -72,7 +72,7 @@ pub(crate) struct FrontierArgs {
     /// Folder to write frontier.csv, plots, crops and index.html to; made if it is not there.
     #[arg(short, long, value_name = "DIR")]
     pub output: PathBuf,
-    /// A minute or two instead of several: the same scenes with at most two computed textures each, a quarter of
+    /// A minute or two instead of several: all scenes but fill_min4, at most two computed textures each, a ninth of
     /// the pixels, a quarter of the samples, fewer frames.
     #[arg(long)]
     pub quick: bool,

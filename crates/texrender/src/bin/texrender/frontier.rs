@@ -10,10 +10,10 @@ use crate::with_threads;
 pub(crate) fn run(args: &FrontierArgs) -> Result<(), Error> {
     // What can be refused at once is refused before any work.
     let options = Options {
-        scenes: if args.scene == "all" {
-            Scene::all()
-        } else {
-            vec![Scene::named(&args.scene)?]
+        scenes: match args.scene.as_str() {
+            "all" if args.quick => Scene::quick(),
+            "all" => Scene::all(),
+            name => vec![Scene::named(name)?],
         },
         texture: args.texture.as_deref().map(TestTexture::load).transpose()?,
         effort: if args.quick {
