@@ -133,9 +133,9 @@ fn the_showcase_has_two_uv_sets_colours_and_both_kinds_of_tangents() {
 fn the_showcase_wraps_in_every_way_and_magnifies_in_both() {
     let textures = showcase().textures;
     let any = |what: fn(&SamplerState) -> bool| textures.iter().any(|t: &Texture| what(&t.sampler));
-    assert!(any(|s| s.address == [AddressMode::Repeat; 2]));
-    assert!(any(|s| s.address == [AddressMode::MirrorRepeat; 2]));
-    assert!(any(|s| s.address == [AddressMode::ClampToEdge; 2]));
+    assert!(any(|s| s.address.modes == [AddressMode::Repeat; 2]));
+    assert!(any(|s| s.address.modes == [AddressMode::MirrorRepeat; 2]));
+    assert!(any(|s| s.address.modes == [AddressMode::ClampToEdge; 2]));
     assert!(any(|s| s.magnify == Filter::Nearest));
     assert!(any(|s| s.magnify == Filter::Bilinear));
 }

@@ -16,8 +16,8 @@ use std::f64::consts::{PI, TAU};
 use glam::{DVec2, DVec3, UVec2, Vec2, Vec3};
 use sampler::Texture;
 
-use crate::chart::cube::CubeFace;
 use crate::latlong::LatLong;
+use sampler::cube::CubeFace;
 
 /// Widest map that is integrated as it is; wider ones are halved first, by solid angle.
 const MAX_INTEGRATED_WIDTH: u32 = 2048;

@@ -1,8 +1,8 @@
-use glam::{DVec3, UVec2, Vec2, Vec3};
+use glam::{DVec3, IVec2, UVec2, Vec2, Vec3};
 
-use crate::chart::cube::{CubeFace, direction_to_cube};
 use crate::error::Error;
 use crate::solid_angle::cube_face_solid_angles;
+use sampler::cube::{CubeFace, direction_to_cube};
 
 /// Values on the six faces of a cube, read without seams.
 ///
@@ -146,79 +146,21 @@ impl CubeMap {
 
 /// A face with its frame.
 fn framed(size: u32, face: CubeFace, faces: &[Vec<Vec3>; 6]) -> Vec<Vec3> {
-    let side = i64::from(size);
-    let inside = |k: i64| (0..side).contains(&k);
-    let at = |i: i64, j: i64| {
-        let (face, i, j) = if inside(i) && inside(j) {
-            (face, i, j)
-        } else {
-            beyond_edge(size, face, i, j)
-        };
-        faces[face as usize][usize::try_from(j * side + i).expect("indices inside the face")]
+    let side = i32::try_from(size).expect("a face of this size fits in memory");
+    let at = |ij: IVec2| {
+        let (face, ij) = face.touching(size, ij)?;
+        Some(faces[face as usize][ij.y as usize * size as usize + ij.x as usize])
     };
-    let cell = |i: i64, j: i64| {
-        if inside(i) || inside(j) {
-            return at(i, j);
-        }
-        // The three texels that meet at the corner.
-        let (x, y) = (i.clamp(0, side - 1), j.clamp(0, side - 1));
-        (at(x, y) + at(i, y) + at(x, j)) / 3.0
+    let cell = |i: i32, j: i32| {
+        at(IVec2::new(i, j)).unwrap_or_else(|| {
+            // The three texels that meet at the corner.
+            let inside = IVec2::new(i.clamp(0, side - 1), j.clamp(0, side - 1));
+            let three = [inside, IVec2::new(i, inside.y), IVec2::new(inside.x, j)];
+            three.into_iter().filter_map(at).sum::<Vec3>() / 3.0
+        })
     };
     (-1..=side)
         .flat_map(|j| (-1..=side).map(move |i| (i, j)))
         .map(|(i, j)| cell(i, j))
         .collect()
-}
-
-/// The texel of the neighbouring face that touches texel (i, j), which is one step outside across an edge.
-fn beyond_edge(size: u32, face: CubeFace, i: i64, j: i64) -> (CubeFace, i64, i64) {
-    // A hair outside the edge, so that the index along the edge is not scaled away.
-    let coordinate = |k: i64| match k {
-        -1 => -1e-3 / size as f32,
-        k if k == i64::from(size) => 1.0 + 1e-3 / size as f32,
-        k => (k as f32 + 0.5) / size as f32,
-    };
-    let (neighbour, st) = direction_to_cube(face.point(Vec2::new(coordinate(i), coordinate(j))));
-    (neighbour, index(st.x, size), index(st.y, size))
-}
-
-#[allow(
-    clippy::cast_possible_truncation,
-    reason = "0 ≤ s ≤ 1, and truncation is the floor"
-)]
-fn index(s: f32, size: u32) -> i64 {
-    ((s * size as f32) as i64).min(i64::from(size) - 1)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::chart::cube::cube_to_direction;
-
-    #[test]
-    fn the_frame_holds_the_touching_texels() {
-        for size in [1u32, 2, 3, 8, 128, 1000] {
-            for face in CubeFace::ALL {
-                for k in 0..i64::from(size) {
-                    for (i, j) in [(-1, k), (i64::from(size), k), (k, -1), (k, i64::from(size))] {
-                        let (neighbour, ni, nj) = beyond_edge(size, face, i, j);
-                        assert_ne!(neighbour, face);
-                        let st =
-                            |i: i64, j: i64| (Vec2::new(i as f32, j as f32) + 0.5) / size as f32;
-                        let near = (
-                            i.clamp(0, i64::from(size) - 1),
-                            j.clamp(0, i64::from(size) - 1),
-                        );
-                        let here = cube_to_direction(face, st(near.0, near.1));
-                        let there = cube_to_direction(neighbour, st(ni, nj));
-                        // Half a texel up each face, folded by a right angle: √½ texels apart.
-                        assert!(
-                            here.distance(there) <= 1.45 / size as f32,
-                            "{size} {face:?} {i} {j}"
-                        );
-                    }
-                }
-            }
-        }
-    }
 }

@@ -101,7 +101,7 @@ impl LatLong {
         };
         // Near the poles texels are as narrow as the sine of the polar angle: 64 probes serve to within 1°.
         let state = SamplerState {
-            address: ADDRESS,
+            address: ADDRESS.into(),
             max_anisotropy: 64.0,
             ..SamplerState::default()
         };
@@ -165,7 +165,7 @@ fn st_derivative(direction: Vec3, change: Vec3) -> Vec2 {
 /// Replaces texels that are no radiance; only float textures can hold any.
 fn sanitised(texture: Texture) -> (Texture, u64) {
     let format = texture.format();
-    if format.component != Component::F32 {
+    if !matches!(format.component, Component::F16 | Component::F32) {
         return (texture, 0);
     }
     let channels = usize::from(format.channels);

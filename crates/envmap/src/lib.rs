@@ -66,7 +66,6 @@ mod solid_angle;
 mod specular;
 mod studio;
 
-pub use chart::cube::{CubeFace, cube_to_direction, direction_to_cube};
 pub use chart::latlong::{direction_to_latlong_st, latlong_st_to_direction};
 pub use convert::resample_latlong_face;
 pub use cube_map::CubeMap;
@@ -75,6 +74,7 @@ pub use error::Error;
 pub use irradiance::{IrradianceTable, irradiance_face};
 pub use latlong::LatLong;
 pub use prefilter::prefilter_face;
+pub use sampler::cube::{CubeFace, cube_to_direction, direction_to_cube};
 pub use solid_angle::{cube_texel_solid_angle, latlong_texel_solid_angle};
 pub use specular::SpecularTable;
 pub use studio::{studio, studio_radiance};

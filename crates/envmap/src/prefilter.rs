@@ -1,7 +1,7 @@
 use glam::{DVec3, Vec2, Vec3};
 
-use crate::chart::cube::{CubeFace, cube_to_direction};
 use crate::cube_pyramid::{CubePyramid, LevelPlace};
+use sampler::cube::{CubeFace, cube_to_direction};
 
 /// Area of the texels that a sample reads over its share of the lobe. At 1 the bilinear tents of neighbouring samples
 /// overlap by half. 4, as Křivánek and Colbert 2008 have it, is smoother by sight but takes 3 to 7 % off the contrast

@@ -1,6 +1,6 @@
-use glam::{DVec2, UVec2, Vec2};
+use glam::{DMat2, DVec2, UVec2, Vec2};
 
-use crate::lod::round_to_f32;
+use crate::lod::{LodRule, round_to_f32};
 
 /// Where a pixel looks in a texture, and how far its neighbours look.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -119,10 +119,51 @@ impl AxisLengths {
         }
     }
 
+    /// The axes by `rule`; by [`LodRule::MaxLength`] the two derivative vectors themselves.
+    #[inline]
+    pub(crate) fn by_rule(size: UVec2, dst_dx: Vec2, dst_dy: Vec2, rule: LodRule) -> Self {
+        let exact = Self::of(size, dst_dx, dst_dy);
+        if rule == LodRule::Exact || exact.major.is_infinite() {
+            return exact;
+        }
+        let [x, y] = [exact.a.length(), exact.b.length()];
+        let (long, [major, minor]) = if x >= y {
+            (exact.a, [x, y])
+        } else {
+            (exact.b, [y, x])
+        };
+        // The longer vector alone gives the direction.
+        Self {
+            major: round_to_f32(major),
+            minor: round_to_f32(minor),
+            a: long,
+            b: DVec2::ZERO,
+            ..exact
+        }
+    }
+
     /// major / minor, at least 1; ∞ for a line, 1 for a point or an unbounded footprint.
     #[inline]
     pub(crate) fn anisotropy(&self) -> f32 {
         aspect(self.major, self.minor)
+    }
+
+    /// J Jᵀ in texels², its minor axis widened to `minor`. Finite axes only.
+    pub(crate) fn covariance(&self, minor: f32) -> DMat2 {
+        let column = |v: DVec2| DMat2::from_cols(v * v.x, v * v.y);
+        let across = major_direction(self.a, self.b).perp();
+        let [wanted, actual] = [minor, self.minor].map(|axis| f64::from(axis) * f64::from(axis));
+        column(self.a) + column(self.b) + column(across) * (wanted - actual).max(0.0)
+    }
+
+    /// Both axes from end to end, in st, the shorter widened to `minor`. Finite axes only.
+    pub(crate) fn axes(&self, minor: f32) -> [DVec2; 2] {
+        let along = major_direction(self.a, self.b);
+        let minor = f64::from(minor.max(self.minor));
+        [
+            along * f64::from(self.major) / self.scale,
+            along.perp() * minor / self.scale,
+        ]
     }
 
     /// The longer axis from end to end, in st.

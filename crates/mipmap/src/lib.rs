@@ -59,13 +59,16 @@
 #![forbid(unsafe_code)]
 
 mod downsample;
+mod ewa;
 mod footprint;
 mod lod;
 mod probes;
 mod pyramid;
 mod sample;
 
+pub use ewa::{EwaTier, ewa};
 pub use footprint::{Axes, Footprint, footprint_axes};
 pub use lod::{LOD_MAX_ABS_ERROR, LodRule, lod};
+pub use probes::ProbeWeights;
 pub use pyramid::{Content, Pyramid};
 pub use sample::{MAX_ANISOTROPY, MipFilter, SamplerState, sample, sample_with_lod};

@@ -1,7 +1,7 @@
 //! A line of probes along the major axis of a footprint.
 //!
-//! The box of length η (in units of the probe distance) is cut into cells of length 1, centred on the middle one; the
-//! two end cells hold what is left. Each cell has one probe, at its middle, weighted by its length:
+//! **Equal weights.** The box of length η (in units of the probe distance) is cut into cells of length 1, centred on
+//! the middle one; the two end cells hold what is left. Each cell has one probe, at its middle, weighted by its length:
 //!
 //! ```text
 //!   η = 3.6    |··|------|------|------|··|       cells
@@ -10,20 +10,62 @@
 //! ```
 //!
 //! As η grows, end cells grow from length 0, so no probe appears with a jump.
+//!
+//! **Gaussian weights.** A trilinear probe of diameter 1 has variance ¼: 1/12 of the level's box and 1/6 of the
+//! bilinear tent. That is the variance of a Gaussian pixel of σ = ½ across the minor axis; along the major axis η²/4
+//! is wanted, so the line adds s² = (η² − 1)/4. Probes stand one diameter apart; their weights
+//!
+//! ```text
+//! w(x) = exp(−x²/2s'²) − exp(−c²/2),   |x| < c s'
+//! ```
+//!
+//! reach 0 where they are cut, so that none appears with a jump; s' is s widened by what the cut takes away.
 
 use glam::{DVec2, DVec4};
+
+/// How the probes along a footprint's major axis are weighted.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum ProbeWeights {
+    /// As a box of the footprint's length: the target is a pixel that is a box.
+    #[default]
+    Equal,
+    /// As a Gaussian of the footprint's variance, in about 2.5 times as many probes: the target is a Gaussian pixel
+    /// of σ = ½, cut at 2.5 σ.
+    Gaussian,
+}
+
+/// Where the Gaussian is cut, in standard deviations.
+const CUT: f64 = 2.5;
+/// exp(−CUT²/2).
+const EDGE: f64 = 0.043_936_933_623_407_42;
+/// Variance of exp(−x²/2) − exp(−CUT²/2) on |x| < CUT: with G = √(2π)·erf(CUT/√2), (G − 2·CUT·EDGE − ⅔·CUT³·EDGE)
+/// over (G − 2·CUT·EDGE).
+const CUT_VARIANCE: f64 = 0.797_112_438_046_719_6;
 
 /// The probes of one footprint.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Probes {
     /// From one probe to the next, in st.
     step: DVec2,
-    /// Whole cells on each side of the middle one.
-    whole: u32,
-    /// Length of an end cell, in (0, 1].
-    end: f64,
-    /// Length of the box in cells.
-    total: f64,
+    shape: Shape,
+}
+
+#[derive(Debug, Clone, Copy)]
+enum Shape {
+    Box {
+        /// Whole cells on each side of the middle one.
+        whole: u32,
+        /// Length of an end cell, in [0, 1).
+        end: f64,
+        /// Length of the box in cells.
+        total: f64,
+    },
+    Gaussian {
+        /// Probes on each side of the middle one.
+        side: u32,
+        /// 1/(2 s'²).
+        falloff: f64,
+    },
 }
 
 impl Probes {
@@ -32,15 +74,29 @@ impl Probes {
         clippy::cast_possible_truncation,
         reason = "η is at most MAX_ANISOTROPY, and truncation is the floor"
     )]
-    pub(crate) fn along(axis: DVec2, eta: f32) -> Self {
+    pub(crate) fn along(axis: DVec2, eta: f32, weights: ProbeWeights) -> Self {
         let eta = f64::from(eta);
-        let half = (eta - 1.0) * 0.5;
-        let whole = half as u32;
+        let shape = match weights {
+            ProbeWeights::Equal => {
+                let half = (eta - 1.0) * 0.5;
+                let whole = half as u32;
+                Shape::Box {
+                    whole,
+                    end: half - f64::from(whole),
+                    total: eta,
+                }
+            }
+            ProbeWeights::Gaussian => {
+                let variance = (eta * eta - 1.0) * (0.25 / CUT_VARIANCE);
+                Shape::Gaussian {
+                    side: (CUT * variance.sqrt()) as u32,
+                    falloff: 0.5 / variance,
+                }
+            }
+        };
         Self {
             step: axis / eta,
-            whole,
-            end: half - f64::from(whole),
-            total: eta,
+            shape,
         }
     }
 
@@ -50,15 +106,32 @@ impl Probes {
     #[inline(always)]
     pub(crate) fn map_sum(self, colour: impl Fn(DVec2) -> DVec4) -> DVec4 {
         let pair = |cells: f64| colour(self.step * cells) + colour(self.step * -cells);
-        let mut sum = colour(DVec2::ZERO);
-        for cell in 1..=self.whole {
-            sum += pair(f64::from(cell));
+        let middle = colour(DVec2::ZERO);
+        match self.shape {
+            Shape::Box { whole, end, total } => {
+                let mut sum = middle;
+                for cell in 1..=whole {
+                    sum += pair(f64::from(cell));
+                }
+                if end > 0.0 {
+                    // The end cell's middle: half a cell beyond the last whole one's centre, and half its own length.
+                    sum += pair(f64::from(whole) + 0.5 + 0.5 * end) * end;
+                }
+                sum / total
+            }
+            Shape::Gaussian { side, falloff } => {
+                // Differences from the middle: a constant has none.
+                let mut total = 1.0 - EDGE;
+                let mut sum = DVec4::ZERO;
+                for probe in 1..=side {
+                    let x = f64::from(probe);
+                    let weight = (libm::exp(-x * x * falloff) - EDGE).max(0.0);
+                    total += 2.0 * weight;
+                    sum += (pair(x) - middle * 2.0) * weight;
+                }
+                middle + sum / total
+            }
         }
-        if self.end > 0.0 {
-            // The end cell's middle: half a cell beyond the last whole one's centre, and half its own length.
-            sum += pair(f64::from(self.whole) + 0.5 + 0.5 * self.end) * self.end;
-        }
-        sum / self.total
     }
 }
 
@@ -66,8 +139,8 @@ impl Probes {
 mod tests {
     use super::*;
 
-    fn moment(eta: f32, power: i32) -> f64 {
-        Probes::along(DVec2::X * f64::from(eta), eta)
+    fn moment(eta: f32, power: i32, weights: ProbeWeights) -> f64 {
+        Probes::along(DVec2::X * f64::from(eta), eta, weights)
             .map_sum(|offset| DVec4::splat(offset.x.abs().powi(power)))
             .x
     }
@@ -75,7 +148,9 @@ mod tests {
     #[test]
     fn weights_sum_to_one() {
         for eta in [1.0, 1.001, 2.0, 2.999, 3.0, 3.001, 16.0, 64.0] {
-            assert!((moment(eta, 0) - 1.0).abs() < 1e-14, "{eta}");
+            for weights in [ProbeWeights::Equal, ProbeWeights::Gaussian] {
+                assert!((moment(eta, 0, weights) - 1.0).abs() < 1e-14, "{eta}");
+            }
         }
     }
 
@@ -84,7 +159,39 @@ mod tests {
         // A box of length η has mean |x| = η/4; the midpoint rule is off by the middle cell alone: 1/(4η).
         for eta in [2.0f32, 3.0, 7.5, 16.0] {
             let expected = f64::from(eta) / 4.0 - 0.25 / f64::from(eta);
-            assert!((moment(eta, 1) - expected).abs() < 1e-12, "{eta}");
+            let mean = moment(eta, 1, ProbeWeights::Equal);
+            assert!((mean - expected).abs() < 1e-12, "{eta}");
         }
+    }
+
+    #[test]
+    fn the_gaussian_line_has_the_variance_that_the_probes_lack() {
+        // A probe apart is coarse for a short line; from aspect 2 on the sum is near its integral.
+        for eta in [2.0f32, 3.0, 7.5, 16.0, 64.0] {
+            let wanted = (f64::from(eta).powi(2) - 1.0) / 4.0;
+            let variance = moment(eta, 2, ProbeWeights::Gaussian);
+            assert!(
+                (variance / wanted - 1.0).abs() < 0.03,
+                "{eta}: {variance} {wanted}"
+            );
+        }
+    }
+
+    #[test]
+    fn the_constants_are_those_of_the_cut() {
+        let steps = 1_000_000;
+        let (mut mass, mut second) = (0.0, 0.0);
+        for k in 0..steps {
+            let x = CUT * (f64::from(k) + 0.5) / f64::from(steps);
+            let weight = (-0.5 * x * x).exp() - EDGE;
+            mass += weight;
+            second += weight * x * x;
+        }
+        assert!(((-0.5 * CUT * CUT).exp() - EDGE).abs() < 1e-16);
+        assert!(
+            (second / mass - CUT_VARIANCE).abs() < 1e-9,
+            "{}",
+            second / mass
+        );
     }
 }

@@ -111,7 +111,7 @@ fn method(texture: &Texture, content: Content) -> Method {
         },
         arithmetic: match format.component {
             Component::U8 | Component::U16 => Arithmetic::UnitRange,
-            Component::F32 => Arithmetic::AnyRange,
+            Component::F16 | Component::F32 => Arithmetic::AnyRange,
         },
     }
 }

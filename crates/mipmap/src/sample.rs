@@ -1,8 +1,9 @@
 use glam::{DVec2, DVec4, UVec2, Vec4};
-use sampler::{AddressMode, Filter};
+use sampler::{AddressMode, Addressing, Filter, Precision};
 
 use crate::footprint::{AxisLengths, Footprint};
-use crate::probes::Probes;
+use crate::lod::LodRule;
+use crate::probes::{ProbeWeights, Probes};
 use crate::pyramid::Pyramid;
 
 /// The greatest anisotropy that a lookup follows, whatever its state asks for.
@@ -24,27 +25,67 @@ pub enum MipFilter {
 /// How a pyramid is read. The default is the best this crate offers: trilinear, 16 times anisotropic, repeating.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SamplerState {
-    /// Address modes of s and of t.
-    pub address: [AddressMode; 2],
+    /// Address modes of s and of t, and the border's colour.
+    pub address: Addressing<2>,
+    /// How exactly 8-bit texels are filtered within a level.
+    pub precision: Precision,
     /// Filter where a texel covers a pixel or more (λ ≤ 0).
     pub magnify: Filter,
     /// Filter within a level where a pixel covers more than a texel (λ > 0).
     pub minify: Filter,
     /// How levels are chosen where λ > 0.
     pub mip: MipFilter,
+    /// Which lengths of the footprint count as its axes.
+    pub lod_rule: LodRule,
+    /// Added to λ: negative is sharper. NaN counts as 0.
+    pub lod_bias: f32,
+    /// Least and greatest λ, after the bias. The least wins over a smaller greatest; NaN is no limit.
+    pub lod_range: [f32; 2],
     /// Greatest aspect of a footprint that is followed by a line of probes; 1 turns it off. Less than 1 and NaN
     /// count as 1, more than [`MAX_ANISOTROPY`] as that.
     pub max_anisotropy: f32,
+    /// How the probes of that line are weighted, and so the pixel kernel it stands for.
+    pub probe_weights: ProbeWeights,
+}
+
+impl SamplerState {
+    /// λ with bias and limits. Negative λ counts until the bias is added; NaN never passes.
+    #[inline]
+    fn limited(&self, lambda: f32) -> f32 {
+        let biased = if self.lod_bias.is_nan() {
+            lambda
+        } else {
+            lambda + self.lod_bias
+        };
+        // `min` and `max` ignore NaN; ∞ − ∞ is the coarsest level.
+        let biased = if biased.is_nan() {
+            f32::INFINITY
+        } else {
+            biased
+        };
+        biased.min(self.lod_range[1]).max(self.lod_range[0])
+    }
+
+    /// Whether λ ≤ 0 before bias and limits is λ ≤ 0 after them.
+    #[inline]
+    fn keeps_magnification(&self) -> bool {
+        !(self.lod_bias > 0.0 || self.lod_range[0] > 0.0)
+    }
 }
 
 impl Default for SamplerState {
     fn default() -> Self {
         Self {
-            address: [AddressMode::Repeat; 2],
+            address: Addressing::default(),
+            precision: Precision::Exact,
             magnify: Filter::Bilinear,
             minify: Filter::Bilinear,
             mip: MipFilter::Linear,
+            lod_rule: LodRule::Exact,
+            lod_bias: 0.0,
+            lod_range: [f32::NEG_INFINITY, f32::INFINITY],
             max_anisotropy: 16.0,
+            probe_weights: ProbeWeights::Equal,
         }
     }
 }
@@ -54,11 +95,11 @@ impl Default for SamplerState {
 /// With major and minor the footprint's axes in texels ([`crate::footprint_axes`]):
 ///
 /// ```text
-/// η = min(major/minor, max_anisotropy, max(major, 1))      λ = log₂(major/η)
+/// η = min(major/minor, max_anisotropy, max(major, 1))      λ = log₂(major/η) + bias, within its range
 /// ```
 ///
-/// A box of length `major` along the major axis is covered by probes a distance major/η apart, each weighted by the
-/// part of the box that it stands for; every probe filters at λ. For η = 1 that is one probe: with exact major axis,
+/// The footprint is covered by a line of probes a distance major/η apart along the major axis, weighted as
+/// [`ProbeWeights`] says (by default as a box of length `major`); every probe filters at λ. For η = 1 that is one probe: with exact major axis,
 /// the isotropic rule. The third term keeps probes at least a texel apart. Where max_anisotropy cuts η, λ rises. The
 /// result is continuous in every input wherever magnify, minify and mip are linear.
 ///
@@ -103,14 +144,19 @@ pub fn sample_with_lod(
     }
 
     // A texel covers the pixel: η = 1 and λ ≤ 0, whatever the axes.
-    if footprint.is_within_texel(pyramid.size()) {
+    if state.keeps_magnification() && footprint.is_within_texel(pyramid.size()) {
         return (lookup(pyramid, state, state.magnify, 0, footprint.st), 0.0);
     }
 
     // Which levels, and how many probes.
-    let axes = AxisLengths::of(pyramid.size(), footprint.dst_dx, footprint.dst_dy);
+    let axes = AxisLengths::by_rule(
+        pyramid.size(),
+        footprint.dst_dx,
+        footprint.dst_dy,
+        state.lod_rule,
+    );
     let eta = followed_anisotropy(&axes, max_anisotropy);
-    let lambda = libm::log2f(axes.major / eta);
+    let lambda = state.limited(libm::log2f(axes.major / eta));
     let filter = if lambda > 0.0 {
         state.minify
     } else {
@@ -119,7 +165,7 @@ pub fn sample_with_lod(
     let levels = Levels::at(lambda, pyramid.levels(), state.mip);
 
     // A level of one texel gives that texel wherever a probe stands.
-    let bordered = state.address.contains(&AddressMode::ClampToBorder);
+    let bordered = state.address.modes.contains(&AddressMode::ClampToBorder);
     if levels.fraction == 0.0 && !bordered && pyramid.level(levels.fine).size() == UVec2::ONE {
         return (pyramid.level(levels.fine).fetch(UVec2::ZERO), levels.lod());
     }
@@ -127,7 +173,7 @@ pub fn sample_with_lod(
     if eta == 1.0 {
         return (at(footprint.st).as_vec4(), levels.lod());
     }
-    let probes = Probes::along(axes.direction().as_dvec2(), eta);
+    let probes = Probes::along(axes.direction().as_dvec2(), eta, state.probe_weights);
     let sum = probes.map_sum(|offset| at(footprint.st + offset));
     (sum.as_vec4(), levels.lod())
 }
@@ -141,7 +187,13 @@ fn followed_anisotropy(axes: &AxisLengths, max_anisotropy: f32) -> f32 {
 
 #[inline]
 fn lookup(pyramid: &Pyramid, state: &SamplerState, filter: Filter, level: u32, st: DVec2) -> Vec4 {
-    sampler::sample(pyramid.level(level), state.address, filter, st)
+    sampler::sample(
+        pyramid.level(level),
+        state.address,
+        filter,
+        state.precision,
+        st,
+    )
 }
 
 /// One stored level, or two neighbours and the weight of the coarser.

@@ -8,12 +8,17 @@
 //! Repeat               0  1  2 | 0  1  2 | 0  1  2
 //! MirrorRepeat         2  1  0 | 0  1  2 | 2  1  0
 //! ClampToEdge          0  0  0 | 0  1  2 | 2  2  2
+//! MirrorClampToEdge    2  1  0 | 0  1  2 | 2  2  2
 //! ClampToBorder        ·  ·  · | 0  1  2 | ·  ·  ·     · = the border colour
 //! ```
 //!
 //! Repeating coordinates are reduced to one period in f64 **before** they are scaled, and the scaled position is
 //! held in 61 fractional bits, so the reduction itself costs no precision: an f64 coordinate at 2²⁰ on a 16384
 //! texture lands within 2⁻¹⁸ texel (an f32 coordinate there is spaced 2048 texels apart; see the crate's limits).
+
+use glam::Vec4;
+
+use crate::filter::Cubic;
 
 /// What lies outside 0..1 along one axis (also called wrap mode).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
@@ -26,8 +31,39 @@ pub enum AddressMode {
     MirrorRepeat,
     /// The outermost texel extends outwards.
     ClampToEdge,
-    /// Outside lies the border colour, [`crate::BORDER`].
+    /// The texture is reflected once about 0; beyond the reflection and beyond 1 the outermost texel extends.
+    MirrorClampToEdge,
+    /// Outside lies the border colour, [`Addressing::border`].
     ClampToBorder,
+}
+
+/// What lies outside 0..1 along every axis.
+///
+/// Made from an array of modes where no border colour is needed: `[AddressMode::Repeat; 2].into()`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Addressing<const AXES: usize> {
+    /// The mode of each axis: s, t, and p in volumes.
+    pub modes: [AddressMode; AXES],
+    /// The colour outside along an axis of [`AddressMode::ClampToBorder`]: linear, premultiplied where the texture
+    /// is. Read as it is; a component that is not finite is the caller's wish.
+    pub border: Vec4,
+}
+
+impl<const AXES: usize> From<[AddressMode; AXES]> for Addressing<AXES> {
+    /// These modes with transparent black as the border.
+    fn from(modes: [AddressMode; AXES]) -> Self {
+        Self {
+            modes,
+            border: Vec4::ZERO,
+        }
+    }
+}
+
+impl<const AXES: usize> Default for Addressing<AXES> {
+    /// Repeating along every axis.
+    fn default() -> Self {
+        [AddressMode::Repeat; AXES].into()
+    }
 }
 
 /// Fractional bits of a texel-space position.
@@ -50,6 +86,34 @@ pub(crate) struct Taps {
     pub(crate) far: u32,
     /// Weight of `far`, in \[0, ½\].
     pub(crate) far_weight: f64,
+}
+
+/// The four texels that a cubic filter reads along one axis, in order. Those of weight 0 are not read.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct CubicTaps {
+    pub(crate) texels: [u32; 4],
+    /// Sum to 1 within rounding.
+    pub(crate) weights: [f64; 4],
+}
+
+/// Fractional bits of a fixed-point weight.
+pub(crate) const FIXED_BITS: u32 = 12;
+const FIXED_ONE: f64 = (1 << FIXED_BITS) as f64;
+
+/// As [`Taps`], in integers, `near` the left or upper one.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct FixedTaps {
+    pub(crate) near: u32,
+    pub(crate) far: u32,
+    /// Weight of `far` in units of 2⁻¹², below 1.
+    pub(crate) far_weight: u32,
+}
+
+impl FixedTaps {
+    #[inline(always)]
+    pub(crate) fn reads_border(self) -> bool {
+        self.near == OUTSIDE || self.far == OUTSIDE
+    }
 }
 
 impl Taps {
@@ -90,6 +154,7 @@ impl AddressMode {
                 folded.min(2 * n - 1 - folded)
             }
             Self::ClampToEdge => index.clamp(0, n - 1),
+            Self::MirrorClampToEdge => index.max(-1 - index).min(n - 1),
             Self::ClampToBorder => return None,
         };
         u32::try_from(stored).ok()
@@ -130,6 +195,54 @@ impl AddressMode {
         }
     }
 
+    /// The four texels around the coordinate, weighted by a cubic kernel.
+    pub(crate) fn cubic_taps(self, coordinate: f64, size: u32, kernel: Cubic) -> CubicTaps {
+        let from_centre = self.position(coordinate, size) - i128::from(ONE / 2);
+        let left = whole(from_centre);
+        let fraction = fraction(from_centre) as f64 * (1.0 / ONE as f64);
+        CubicTaps {
+            texels: [left - 1, left, left + 1, left + 2]
+                .map(|index| self.resolve_or_outside(index, size)),
+            weights: kernel.weights(fraction),
+        }
+    }
+
+    /// As [`AddressMode::linear_taps`], the position rounded to 2⁻¹² texel.
+    #[inline(always)]
+    #[allow(
+        clippy::cast_possible_truncation,
+        reason = "positions lie within two textures, and rounding is the purpose"
+    )]
+    pub(crate) fn fixed_taps(self, coordinate: f64, size: u32) -> FixedTaps {
+        let reduced = match self {
+            Self::Repeat if coordinate.abs() < FLOOR_BELOW => coordinate - floor_small(coordinate),
+            Self::MirrorRepeat if coordinate.abs() < FLOOR_BELOW => {
+                coordinate - 2.0 * floor_small(coordinate * 0.5)
+            }
+            Self::Repeat | Self::MirrorRepeat => 0.0,
+            _ if coordinate.is_nan() => 0.0,
+            _ => coordinate.clamp(-2.0, 2.0),
+        };
+        // The half texel is taken off and the half unit of rounding is put on in the same units of 2⁻¹²; the offset
+        // of two textures keeps the cast above zero, where it is the floor.
+        let textures = f64::from(size) * FIXED_ONE;
+        let position = (reduced * textures + (2.0 * textures - 0.5 * FIXED_ONE + 0.5)) as i64;
+        let left = (position >> FIXED_BITS) - 2 * i64::from(size);
+        let far_weight = (position & ((1 << FIXED_BITS) - 1)) as u32;
+        let (near, far) = match u32::try_from(left) {
+            Ok(inside) if inside < size - 1 => (inside, inside + 1),
+            _ => (
+                self.resolve_or_outside(left, size),
+                self.resolve_or_outside(left + 1, size),
+            ),
+        };
+        FixedTaps {
+            near,
+            far: if far_weight == 0 { near } else { far },
+            far_weight,
+        }
+    }
+
     #[inline]
     fn resolve_or_outside(self, index: i64, size: u32) -> u32 {
         self.resolve(index, size).unwrap_or(OUTSIDE)
@@ -142,9 +255,10 @@ impl AddressMode {
         match self {
             Self::Repeat => i128::from(fixed_fraction(coordinate)) * n,
             Self::MirrorRepeat => i128::from(fixed_fraction(coordinate * 0.5)) * (2 * n),
-            // One texture beyond each end is enough to tell border from texel at every size.
-            Self::ClampToEdge | Self::ClampToBorder => {
-                i128::from(fixed(coordinate.clamp(-1.0, 2.0))) * n
+            // One texture beyond each end is enough to tell border from texel at every size; the reflection is
+            // one more.
+            Self::ClampToEdge | Self::ClampToBorder | Self::MirrorClampToEdge => {
+                i128::from(fixed(coordinate.clamp(-2.0, 2.0))) * n
             }
         }
     }

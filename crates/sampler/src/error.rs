@@ -1,4 +1,7 @@
-use glam::UVec2;
+use glam::{UVec2, UVec3};
+
+use crate::cube::CubeFace;
+use crate::format::Format;
 
 /// Why a texture could not be made.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
@@ -23,6 +26,38 @@ pub enum Error {
         size: UVec2,
         /// The number of channels asked for.
         channels: u8,
+    },
+    /// A side of a volume has no texels.
+    #[error("volume of {}×{}×{} texels is empty; every side must be at least 1", .size.x, .size.y, .size.z)]
+    EmptyVolume {
+        /// The size asked for, in texels.
+        size: UVec3,
+    },
+    /// A volume's texels cannot be counted in this machine's address space.
+    #[error("volume of {}×{}×{} texels with {channels} channels is too large to address", .size.x, .size.y, .size.z)]
+    VolumeTooLarge {
+        /// The size asked for, in texels.
+        size: UVec3,
+        /// The number of channels asked for.
+        channels: u8,
+    },
+    /// A face of a cube texture is not square, or not like the first face.
+    #[error(
+        "cube face {face:?} has {}×{} texels of {actual:?}; all six must be square and like the first, \
+         {expected_size}×{expected_size} of {expected:?}",
+        .actual_size.x, .actual_size.y
+    )]
+    CubeFace {
+        /// The face at fault.
+        face: CubeFace,
+        /// Its size in texels.
+        actual_size: UVec2,
+        /// Its format.
+        actual: Format,
+        /// Width of the first face, in texels.
+        expected_size: u32,
+        /// Format of the first face.
+        expected: Format,
     },
     /// The buffer does not hold width · height · channels components.
     #[error(

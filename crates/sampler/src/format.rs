@@ -1,5 +1,7 @@
 //! How texels are stored: component type, channels, transfer function, kind of alpha.
 
+use half::f16;
+
 /// How a stored colour component relates to light.
 ///
 /// It concerns colour only: alpha is always stored linearly.
@@ -32,6 +34,8 @@ pub enum Component {
     U8,
     /// 16-bit unsigned normalised: code k means k/65535.
     U16,
+    /// 16-bit float (IEEE 754 binary16), any value; finite ones reach ±65504.
+    F16,
     /// 32-bit float, any value.
     F32,
 }
@@ -49,6 +53,17 @@ pub struct Format {
     pub alpha: AlphaMode,
 }
 
+impl Component {
+    /// Bytes of one component.
+    pub const fn bytes(self) -> usize {
+        match self {
+            Self::U8 => 1,
+            Self::U16 | Self::F16 => 2,
+            Self::F32 => 4,
+        }
+    }
+}
+
 impl Format {
     /// Index of the alpha component within a texel: 1 for two channels, 3 for four, else none.
     pub fn alpha_index(&self) -> Option<usize> {
@@ -63,6 +78,8 @@ pub enum Texels {
     U8(Vec<u8>),
     /// 16-bit unsigned normalised components.
     U16(Vec<u16>),
+    /// 16-bit float components.
+    F16(Vec<f16>),
     /// 32-bit float components.
     F32(Vec<f32>),
 }
@@ -73,6 +90,7 @@ impl Texels {
         match self {
             Self::U8(components) => components.len(),
             Self::U16(components) => components.len(),
+            Self::F16(components) => components.len(),
             Self::F32(components) => components.len(),
         }
     }
@@ -87,6 +105,7 @@ impl Texels {
         match self {
             Self::U8(_) => Component::U8,
             Self::U16(_) => Component::U16,
+            Self::F16(_) => Component::F16,
             Self::F32(_) => Component::F32,
         }
     }

@@ -7,26 +7,30 @@
 //!
 //! ```
 //! use glam::{DVec2, UVec2};
-//! use sampler::{AddressMode, Filter, Texels, Texture, Transfer, sample};
+//! use sampler::{AddressMode, Texels, Texture, Transfer, bilinear};
 //!
 //! let black_white = Texture::new(UVec2::new(2, 1), 1, Transfer::Srgb, Texels::U8(vec![0, 255]))?;
-//! let between = sample(&black_white, [AddressMode::ClampToEdge; 2], Filter::Bilinear, DVec2::new(0.5, 0.5));
+//! let between = bilinear(&black_white, [AddressMode::ClampToEdge; 2], DVec2::new(0.5, 0.5));
 //! assert_eq!(between.x, 0.5); // half the light, not half the code
 //! # Ok::<(), sampler::Error>(())
 //! ```
 //!
 //! # Storage: [`Texture`]
-//! One to four components of u8, u16 or f32 ([`Texels`]), with their [`Transfer`] function and [`AlphaMode`].
-//! Everything is checked when the texture is made; every lookup afterwards has an answer.
+//! One to four components of u8, u16, f16 or f32 ([`Texels`]), with their [`Transfer`] function and [`AlphaMode`].
+//! Everything is checked when the texture is made; every lookup afterwards has an answer. What is not finite in a
+//! file is counted and repaired by [`Texture::repaired`]. Three dimensions: [`volume`]. Six faces: [`cube`].
 //!
 //! # Colour: [`transfer`]
 //! sRGB is decoded at the texel, before any filter. Both directions are exactly rounded. Alpha is never encoded.
 //!
 //! # Where: [`AddressMode`]
 //! Texel (i, j) of N covers \[i, i+1)/N; its centre is at (i + ½)/N. Wrapping is applied to the integer index.
+//! [`Addressing`] holds a mode for each axis and the border's colour.
 //!
 //! # Between texels: [`Filter`]
-//! [`nearest`] takes the containing texel, [`bilinear`] blends four. Filtered colour that belongs to alpha should
+//! [`nearest`] takes the containing texel, [`bilinear`] blends four, [`bicubic`] sixteen; [`sample`] chooses by
+//! value. [`bilinear_fixed`] filters 8-bit texels in integers where [`Precision`] asks for it. [`compare`] filters
+//! comparisons of depths. Filtered colour that belongs to alpha should
 //! be premultiplied: [`Texture::premultiplied`] before, [`unpremultiply`] after.
 //!
 //! # Conventions
@@ -40,12 +44,15 @@
 //! | texel chosen by [`nearest`] | exact below 2⁵¹ repeats | `tests/properties/address.rs` |
 //! | [`bilinear`] | [`BILINEAR_MAX_ERROR_ULPS`] ulp of the largest texel read | `tests/properties/bilinear.rs` |
 //! | envelope, constants | exact | `tests/properties/bilinear.rs` |
+//! | [`bilinear_codes`], 8 bit | exactly rounded | `tests/properties/codes.rs` |
+//! | [`bilinear_fixed`], 8 bit | [`BILINEAR_FIXED_MAX_ERROR`] | `tests/properties/fixed.rs` |
+//! | [`bicubic`] | [`BICUBIC_MAX_ERROR_ULPS`] ulp of the largest texel read | `tests/properties/bicubic.rs` |
 //! | sRGB decode, 8 and 16 bit | nearest f32 | `tests/properties/transfer.rs` |
 //! | sRGB encode, 8 bit | exactly rounded for all 2³² inputs | `tests/properties/transfer.rs` |
 //!
 //! # Limits
 //! An f32 coordinate is spaced 2⁻²⁴·2ᵏ around 2ᵏ: on a 4096 texture it stops resolving 1/256 texel beyond 16
-//! repeats. Widen to f64 where the coordinate is computed, not here. Two dimensions only; no bicubic filter yet.
+//! repeats. Widen to f64 where the coordinate is computed, not here.
 //!
 //! # Sources
 //! Vulkan 1.3, chapter "Image Operations"; Direct3D 11.3 functional specification, 3.2.3 and 7.18;
@@ -54,18 +61,28 @@
 
 mod address;
 mod alpha;
+mod compare;
+pub mod cube;
 mod error;
 mod filter;
 mod format;
 #[cfg(feature = "image")]
 mod image;
+mod non_finite;
 mod texel;
 mod texture;
 pub mod transfer;
+pub mod volume;
+mod weighted;
 
-pub use address::AddressMode;
+pub use address::{AddressMode, Addressing};
 pub use alpha::unpremultiply;
+pub use compare::{Compare, compare};
 pub use error::Error;
-pub use filter::{BILINEAR_MAX_ERROR_ULPS, BORDER, Filter, bilinear, nearest, sample};
+pub use filter::{
+    BICUBIC_MAX_ERROR_ULPS, BILINEAR_FIXED_MAX_ERROR, BILINEAR_MAX_ERROR_ULPS, Cubic, Filter,
+    Precision, bicubic, bilinear, bilinear_codes, bilinear_fixed, nearest, sample,
+};
 pub use format::{AlphaMode, Component, Format, Texels, Transfer};
+pub use non_finite::NonFinite;
 pub use texture::Texture;

@@ -1,10 +1,14 @@
 //! One stored texel to four linear values.
 
+use std::sync::OnceLock;
+
 use glam::Vec4;
+use half::f16;
 
 use crate::format::{Component, Transfer};
 use crate::transfer::{
-    decode_srgb_u8, decode_srgb_u16, decode_unorm_u8, round_to_f32, srgb_to_linear,
+    decode_srgb_u8, decode_srgb_u16, decode_unorm_u8, encode_unorm_u16, round_to_f32,
+    srgb_to_linear,
 };
 
 /// Codes to linear values, chosen once when the texture is made.
@@ -12,6 +16,9 @@ use crate::transfer::{
 pub(crate) struct Tables {
     colour_u8: &'static [f32; 256],
     alpha_u8: &'static [f32; 256],
+    /// As the two above, in units of 1/65535.
+    colour_fixed: &'static [u16; 256],
+    alpha_fixed: &'static [u16; 256],
     /// Empty where 16-bit colour is linear.
     colour_u16: &'static [f32],
 }
@@ -32,6 +39,8 @@ impl Tables {
                 decode_unorm_u8()
             },
             alpha_u8: decode_unorm_u8(),
+            colour_fixed: if srgb { fixed_srgb_u8() } else { &UNORM_FIXED },
+            alpha_fixed: &UNORM_FIXED,
             colour_u16: if srgb && component == Component::U16 {
                 decode_srgb_u16()
             } else {
@@ -47,6 +56,16 @@ impl Tables {
             self.alpha_u8
         } else {
             self.colour_u8
+        }
+    }
+
+    /// As [`Tables::of_channel_u8`], in units of 1/65535.
+    #[inline(always)]
+    pub(crate) fn fixed_of_channel(&self, channel: usize, channels: usize) -> &'static [u16; 256] {
+        if is_alpha(channel, channels) {
+            self.alpha_fixed
+        } else {
+            self.colour_fixed
         }
     }
 
@@ -80,6 +99,23 @@ impl Tables {
     }
 }
 
+/// Code k of 255 as 257 k of 65535.
+static UNORM_FIXED: [u16; 256] = {
+    let mut table = [0; 256];
+    let mut code: u16 = 0;
+    while code < 256 {
+        table[code as usize] = 257 * code;
+        code += 1;
+    }
+    table
+};
+
+/// The light of each 8-bit sRGB code, rounded to 16 bits.
+fn fixed_srgb_u8() -> &'static [u16; 256] {
+    static TABLE: OnceLock<[u16; 256]> = OnceLock::new();
+    TABLE.get_or_init(|| decode_srgb_u8().map(encode_unorm_u16))
+}
+
 /// Whether `channel` of `channels` is alpha: the last of two or of four.
 const fn is_alpha(channel: usize, channels: usize) -> bool {
     channels.is_multiple_of(2) && channel + 1 == channels
@@ -89,13 +125,15 @@ fn unorm_u16(code: u16) -> f32 {
     round_to_f32(f64::from(code) / 65535.0)
 }
 
-pub(crate) fn decode_row_f32_srgb(stored: &[f32], channels: usize, row: &mut [f32]) {
-    for (index, (out, &value)) in row.iter_mut().zip(stored).enumerate() {
-        *out = if is_alpha(index % channels, channels) {
-            value
-        } else {
-            srgb_to_linear(value)
-        };
+/// Decodes floats in place, alpha left as it is.
+pub(crate) fn decode_row_float(transfer: Transfer, channels: usize, row: &mut [f32]) {
+    if transfer == Transfer::Linear {
+        return;
+    }
+    for (index, value) in row.iter_mut().enumerate() {
+        if !is_alpha(index % channels, channels) {
+            *value = srgb_to_linear(*value);
+        }
     }
 }
 
@@ -120,17 +158,33 @@ pub(crate) fn read_u16(stored: &[u16], tables: &Tables, channels: usize, index: 
     })
 }
 
+/// f32 and f16 texels.
 #[inline]
-pub(crate) fn read_f32(stored: &[f32], transfer: Transfer, channels: usize, index: usize) -> Vec4 {
+pub(crate) fn read_float<T: Copy + Into<f32>>(
+    stored: &[T],
+    transfer: Transfer,
+    channels: usize,
+    index: usize,
+) -> Vec4 {
     let texel = &stored[index * channels..][..channels];
     expand(channels, |channel| {
-        let value = texel[channel];
+        let value: f32 = texel[channel].into();
         if transfer == Transfer::Linear || is_alpha(channel, channels) {
             value
         } else {
             srgb_to_linear(value)
         }
     })
+}
+
+/// The nearest f16; a finite value beyond the range of f16 becomes its largest, not infinite.
+pub(crate) fn encode_f16(value: f32) -> f16 {
+    let nearest = f16::from_f32(value);
+    if nearest.is_infinite() && value.is_finite() {
+        f16::MAX.copysign(nearest)
+    } else {
+        nearest
+    }
 }
 
 /// Grey to all three colours, missing alpha to 1.

@@ -1,8 +1,9 @@
 use glam::{UVec2, Vec4};
+use half::slice::HalfFloatSliceExt;
 
 use crate::error::Error;
 use crate::format::{AlphaMode, Component, Format, Texels, Transfer};
-use crate::texel::{Tables, read_f32, read_u8, read_u16};
+use crate::texel::{Tables, decode_row_float, encode_f16, read_float, read_u8, read_u16};
 use crate::transfer::{
     SrgbU8Encoder, encode_srgb_u16, encode_unorm_u8, encode_unorm_u16, linear_to_srgb,
 };
@@ -65,7 +66,7 @@ impl Texture {
     /// A texture of `format` whose linear values are `linear`, each encoded and rounded to the nearest code.
     ///
     /// `linear`: interleaved components as [`Texture::decode_row`] gives them. Integer formats clamp to 0..=1 and
-    /// store NaN as 0; `F32` keeps every value.
+    /// store NaN as 0; `F32` keeps every value; `F16` stores a finite value beyond its range as its largest.
     ///
     /// # Errors
     /// As [`Texture::new`].
@@ -170,12 +171,7 @@ impl Texture {
 
     /// Bytes that the stored components take.
     pub fn byte_len(&self) -> usize {
-        self.texels.len()
-            * match self.texels.component() {
-                Component::U8 => 1,
-                Component::U16 => 2,
-                Component::F32 => 4,
-            }
+        self.texels.len() * self.texels.component().bytes()
     }
 
     /// The texel at `ij`, decoded to linear values: colour by the transfer function, alpha as it is.
@@ -185,7 +181,13 @@ impl Texture {
     #[inline]
     pub fn fetch(&self, ij: UVec2) -> Vec4 {
         let inside = ij.min(self.size - 1);
-        let index = inside.y as usize * self.size.x as usize + inside.x as usize;
+        self.fetch_inside(inside.x, inside.y)
+    }
+
+    /// [`Texture::fetch`] of a texel that exists.
+    #[inline(always)]
+    pub(crate) fn fetch_inside(&self, i: u32, j: u32) -> Vec4 {
+        let index = j as usize * self.size.x as usize + i as usize;
         match &self.texels {
             Texels::U8(stored) => match self.channels {
                 1 => read_u8::<1>(stored, &self.tables, index),
@@ -196,8 +198,11 @@ impl Texture {
             Texels::U16(stored) => {
                 read_u16(stored, &self.tables, usize::from(self.channels), index)
             }
+            Texels::F16(stored) => {
+                read_float(stored, self.transfer, usize::from(self.channels), index)
+            }
             Texels::F32(stored) => {
-                read_f32(stored, self.transfer, usize::from(self.channels), index)
+                read_float(stored, self.transfer, usize::from(self.channels), index)
             }
         }
     }
@@ -228,11 +233,26 @@ impl Texture {
                 _ => self.tables.decode_row_u8::<4>(&stored[range], row),
             },
             Texels::U16(stored) => self.tables.decode_row_u16(&stored[range], channels, row),
-            Texels::F32(stored) if self.transfer == Transfer::Linear => {
-                row.copy_from_slice(&stored[range])
+            Texels::F16(stored) => {
+                stored[range].convert_to_f32_slice(row);
+                decode_row_float(self.transfer, channels, row);
             }
-            Texels::F32(stored) => crate::texel::decode_row_f32_srgb(&stored[range], channels, row),
+            Texels::F32(stored) => {
+                row.copy_from_slice(&stored[range]);
+                decode_row_float(self.transfer, channels, row);
+            }
         }
+    }
+
+    /// The same texture of other texels: as many, of the same type.
+    pub(crate) fn with_texels(self, texels: Texels) -> Self {
+        debug_assert_eq!(
+            texels.component(),
+            self.texels.component(),
+            "type of component"
+        );
+        debug_assert_eq!(texels.len(), self.texels.len(), "number of components");
+        Self { texels, ..self }
     }
 
     /// The decoding tables, for filters that read many texels of one kind.
@@ -287,6 +307,15 @@ fn encode(format: Format, linear: &[f32]) -> Texels {
             channels,
             encode_srgb_u16,
             encode_unorm_u16,
+        )),
+        (Component::F16, Transfer::Linear) => {
+            Texels::F16(linear.iter().map(|&value| encode_f16(value)).collect())
+        }
+        (Component::F16, Transfer::Srgb) => Texels::F16(encode_colour(
+            linear,
+            channels,
+            |light| encode_f16(linear_to_srgb(light)),
+            encode_f16,
         )),
         (Component::F32, Transfer::Linear) => Texels::F32(linear.to_vec()),
         (Component::F32, Transfer::Srgb) => {

@@ -1,4 +1,3 @@
 //! Charts: how directions become texture coordinates.
 
-pub(crate) mod cube;
 pub(crate) mod latlong;

@@ -1,9 +1,9 @@
 //! Inputs that seek trouble.
 
 use glam::{DVec2, UVec2, Vec2};
-use mipmap::{Content, Footprint, MipFilter, Pyramid, SamplerState};
+use mipmap::{Content, Footprint, LodRule, MipFilter, ProbeWeights, Pyramid, SamplerState};
 use proptest::prelude::*;
-use sampler::{AddressMode, Filter, Texels, Texture, Transfer};
+use sampler::{AddressMode, Filter, Precision, Texels, Texture, Transfer};
 
 /// Two derivative vectors by their ellipse: aspect, rotations on both sides, overall scale.
 #[derive(Debug, Clone, Copy)]
@@ -105,6 +105,7 @@ pub(crate) fn state() -> impl Strategy<Value = SamplerState> {
             AddressMode::Repeat,
             AddressMode::MirrorRepeat,
             AddressMode::ClampToEdge,
+            AddressMode::MirrorClampToEdge,
             AddressMode::ClampToBorder,
         ])
     };
@@ -114,13 +115,36 @@ pub(crate) fn state() -> impl Strategy<Value = SamplerState> {
         1.0..20.0f32,
         prop::sample::select(vec![1.0, 2.0, 16.0, 64.0, 0.0, f32::NAN, f32::INFINITY]),
     ];
-    (mode(), mode(), filter(), filter(), mip, anisotropy).prop_map(
-        |(s, t, magnify, minify, mip, max_anisotropy)| SamplerState {
-            address: [s, t],
+    let precision = prop::sample::select(vec![Precision::Exact, Precision::Fixed]);
+    let rule = prop::sample::select(vec![LodRule::Exact, LodRule::MaxLength]);
+    let weights = prop::sample::select(vec![ProbeWeights::Equal, ProbeWeights::Gaussian]);
+    let odd = || prop_oneof![Just(0.0f32), -3.0..3.0f32, any::<f32>()];
+    let levels = (
+        odd(),
+        prop_oneof![Just(f32::NEG_INFINITY), odd()],
+        prop_oneof![Just(f32::INFINITY), odd()],
+    );
+    let choices = (precision, rule, weights, levels);
+    (mode(), mode(), filter(), filter(), mip, anisotropy, choices).prop_map(
+        |(
+            s,
+            t,
             magnify,
             minify,
             mip,
             max_anisotropy,
+            (precision, lod_rule, probe_weights, levels),
+        )| SamplerState {
+            address: [s, t].into(),
+            precision,
+            magnify,
+            minify,
+            mip,
+            lod_rule,
+            lod_bias: levels.0,
+            lod_range: [levels.1, levels.2],
+            max_anisotropy,
+            probe_weights,
         },
     )
 }

@@ -1,9 +1,8 @@
 use glam::{DVec2, DVec4, Vec4};
 
-use super::BORDER;
-use crate::address::{AddressMode, OUTSIDE, Taps};
+use crate::address::{Addressing, OUTSIDE, Taps};
 use crate::format::Texels;
-use crate::texel::{Tables, expand, read_f32, read_u8, read_u16};
+use crate::texel::{Tables, expand, read_float, read_u8, read_u16};
 use crate::texture::Texture;
 
 /// Bound of [`bilinear`]'s error, in units in the last place of the largest |texel| among its four.
@@ -26,8 +25,9 @@ pub const BILINEAR_MAX_ERROR_ULPS: f64 = 2.0;
 /// lies outside on its side.
 ///
 /// # Accuracy
-/// Within [`BILINEAR_MAX_ERROR_ULPS`] of the exact value of the same decoded texels: ½ ulp for f32 texels (blended
-/// in f64), 2 ulp for integer texels (blended in f32). Checked by `tests/properties/bilinear.rs`.
+/// Within [`BILINEAR_MAX_ERROR_ULPS`] of the exact value of the same decoded texels: ½ ulp for float texels (blended
+/// in f64), 2 ulp for integer texels (blended in f32); [`bilinear_codes`](crate::bilinear_codes) rounds 8-bit ones
+/// exactly. Checked by `tests/properties/bilinear.rs`.
 /// # Source
 /// Vulkan 1.3, "Linear filtering"; D3D11 functional specification 7.18.16.3 (the invariants).
 /// # Examples
@@ -40,32 +40,29 @@ pub const BILINEAR_MAX_ERROR_ULPS: f64 = 2.0;
 /// # Ok::<(), sampler::Error>(())
 /// ```
 #[inline]
-pub fn bilinear(texture: &Texture, modes: [AddressMode; 2], st: DVec2) -> Vec4 {
+pub fn bilinear(texture: &Texture, address: impl Into<Addressing<2>>, st: DVec2) -> Vec4 {
+    let address = address.into();
+    let border = address.border;
     let size = texture.size();
-    let s = modes[0].linear_taps(st.x, size.x);
-    let t = modes[1].linear_taps(st.y, size.y);
+    let s = address.modes[0].linear_taps(st.x, size.x);
+    let t = address.modes[1].linear_taps(st.y, size.y);
     let stride = size.x as usize;
     let tables = texture.tables();
     match texture.texels() {
         Texels::U8(stored) => match texture.channels() {
-            1 => blend_u8::<1>(s, t, stride, stored, tables),
-            2 => blend_u8::<2>(s, t, stride, stored, tables),
-            3 => blend_u8::<3>(s, t, stride, stored, tables),
-            _ => blend_u8::<4>(s, t, stride, stored, tables),
+            1 => blend_u8::<1>(s, t, stride, stored, tables, border),
+            2 => blend_u8::<2>(s, t, stride, stored, tables, border),
+            3 => blend_u8::<3>(s, t, stride, stored, tables, border),
+            _ => blend_u8::<4>(s, t, stride, stored, tables, border),
         },
         Texels::U16(stored) => {
             let channels = usize::from(texture.channels());
-            blend(s, t, stride, |index| {
+            blend(s, t, stride, border, |index| {
                 read_u16(stored, tables, channels, index)
             })
         }
-        Texels::F32(stored) => {
-            let channels = usize::from(texture.channels());
-            let transfer = texture.transfer();
-            blend_f64(s, t, stride, |index| {
-                read_f32(stored, transfer, channels, index)
-            })
-        }
+        Texels::F16(stored) => blend_float(s, t, texture, stored, border),
+        Texels::F32(stored) => blend_float(s, t, texture, stored, border),
     }
 }
 
@@ -77,9 +74,10 @@ fn blend_u8<const CHANNELS: usize>(
     stride: usize,
     stored: &[u8],
     tables: &Tables,
+    border: Vec4,
 ) -> Vec4 {
     if s.reads_border() || t.reads_border() {
-        return blend(s, t, stride, |index| {
+        return blend(s, t, stride, border, |index| {
             read_u8::<CHANNELS>(stored, tables, index)
         });
     }
@@ -101,9 +99,9 @@ fn blend_u8<const CHANNELS: usize>(
 
 /// Blends in f32: enough for integer texels, whose values are already rounded to 2⁻¹⁶ or coarser.
 #[inline(always)]
-fn blend(s: Taps, t: Taps, stride: usize, read: impl Fn(usize) -> Vec4) -> Vec4 {
+fn blend(s: Taps, t: Taps, stride: usize, border: Vec4, read: impl Fn(usize) -> Vec4) -> Vec4 {
     if s.reads_border() || t.reads_border() {
-        blend_taps(s, t, |i, j| tap(i, j, stride, &read))
+        blend_taps(s, t, |i, j| tap(i, j, stride, border, &read))
     } else {
         blend_taps(s, t, |i, j| read(j as usize * stride + i as usize))
     }
@@ -122,15 +120,24 @@ fn blend_taps(s: Taps, t: Taps, tap: impl Fn(u32, u32) -> Vec4) -> Vec4 {
 
 /// Blends in f64: the difference of two f32 texels cannot overflow, and one rounding is left.
 #[inline(always)]
-fn blend_f64(s: Taps, t: Taps, stride: usize, read: impl Fn(usize) -> Vec4) -> Vec4 {
+fn blend_float<T: Copy + Into<f32>>(
+    s: Taps,
+    t: Taps,
+    texture: &Texture,
+    stored: &[T],
+    border: Vec4,
+) -> Vec4 {
+    let stride = texture.size().x as usize;
+    let channels = usize::from(texture.channels());
+    let read = |index| read_float(stored, texture.transfer(), channels, index);
     let row = |j: u32| {
-        let near = tap(s.near, j, stride, &read);
+        let near = tap(s.near, j, stride, border, &read);
         if s.far == s.near {
             return near.as_dvec4();
         }
         lerp(
             near.as_dvec4(),
-            tap(s.far, j, stride, &read).as_dvec4(),
+            tap(s.far, j, stride, border, &read).as_dvec4(),
             s.far_weight,
         )
     };
@@ -148,9 +155,9 @@ fn lerp(near: DVec4, far: DVec4, far_weight: f64) -> DVec4 {
 }
 
 #[inline(always)]
-fn tap(i: u32, j: u32, stride: usize, read: &impl Fn(usize) -> Vec4) -> Vec4 {
+fn tap(i: u32, j: u32, stride: usize, border: Vec4, read: &impl Fn(usize) -> Vec4) -> Vec4 {
     if i == OUTSIDE || j == OUTSIDE {
-        BORDER
+        border
     } else {
         read(j as usize * stride + i as usize)
     }

@@ -5,8 +5,15 @@
 )]
 
 mod address;
+mod bicubic;
 mod bilinear;
+mod codes;
+mod compare;
+mod cube;
+mod fixed;
+mod non_finite;
 mod oracle;
 mod storage;
 mod strategies;
 mod transfer;
+mod volume;

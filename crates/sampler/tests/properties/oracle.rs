@@ -32,6 +32,14 @@ pub(crate) fn wrapped(mode: AddressMode, index: i64, size: i64) -> Option<i64> {
         } else {
             i
         }),
+        AddressMode::MirrorClampToEdge => {
+            let reflected = if i < 0 { -1 - i } else { i };
+            Some(if reflected < size {
+                reflected
+            } else {
+                size - 1
+            })
+        }
         AddressMode::ClampToBorder => (0..size).contains(&i).then_some(i),
     }
 }
@@ -93,6 +101,8 @@ fn reduce(mode: AddressMode, s: f64) -> f64 {
     match mode {
         AddressMode::Repeat => s - s.floor(),
         AddressMode::MirrorRepeat => s - 2.0 * (s * 0.5).floor(),
-        AddressMode::ClampToEdge | AddressMode::ClampToBorder => s.clamp(-2.0, 3.0),
+        AddressMode::ClampToEdge | AddressMode::ClampToBorder | AddressMode::MirrorClampToEdge => {
+            s.clamp(-2.0, 3.0)
+        }
     }
 }

@@ -4,12 +4,12 @@ use glam::{DVec2, UVec2, Vec4};
 use proptest::prelude::*;
 use sampler::{AddressMode, AlphaMode, Error, Texels, Texture, Transfer, bilinear, unpremultiply};
 
-use crate::strategies::{float_texture, integer_texture, made};
+use crate::strategies::{float_texture, half_texture, integer_texture, made};
 
 proptest! {
     /// Decoding every row and encoding it again gives the same texture.
     #[test]
-    fn formats_round_trip(texture in prop_oneof![float_texture(), integer_texture()]) {
+    fn formats_round_trip(texture in prop_oneof![float_texture(), half_texture(), integer_texture()]) {
         let row_length = texture.size().x as usize * usize::from(texture.channels());
         let mut linear = vec![0.0; row_length * texture.size().y as usize];
         for (j, row) in (0..texture.size().y).zip(linear.chunks_exact_mut(row_length)) {
@@ -21,7 +21,7 @@ proptest! {
 
     /// `fetch` and `decode_row` agree on every texel.
     #[test]
-    fn fetch_expands_what_the_row_holds(texture in prop_oneof![float_texture(), integer_texture()]) {
+    fn fetch_expands_what_the_row_holds(texture in prop_oneof![float_texture(), half_texture(), integer_texture()]) {
         let channels = usize::from(texture.channels());
         let mut row = vec![0.0; texture.size().x as usize * channels];
         texture.decode_row(0, &mut row);

@@ -4,10 +4,11 @@ use glam::{DVec2, UVec2};
 use proptest::prelude::*;
 use sampler::{AddressMode, Texels, Texture, Transfer};
 
-pub(crate) const MODES: [AddressMode; 4] = [
+pub(crate) const MODES: [AddressMode; 5] = [
     AddressMode::Repeat,
     AddressMode::MirrorRepeat,
     AddressMode::ClampToEdge,
+    AddressMode::MirrorClampToEdge,
     AddressMode::ClampToBorder,
 ];
 
@@ -54,6 +55,25 @@ pub(crate) fn float_texture() -> impl Strategy<Value = Texture> {
         let count = (size.x * size.y) as usize * usize::from(channels);
         prop::collection::vec(-100.0..100.0f32, count)
             .prop_map(move |texels| made(size, channels, Transfer::Linear, Texels::F32(texels)))
+    })
+}
+
+/// As [`float_texture`], in f16.
+pub(crate) fn half_texture() -> impl Strategy<Value = Texture> {
+    float_texture().prop_map(|texture| {
+        let Texels::F32(texels) = texture.texels() else {
+            unreachable!("made of f32")
+        };
+        let texels = texels
+            .iter()
+            .map(|&value| half::f16::from_f32(value))
+            .collect();
+        made(
+            texture.size(),
+            texture.channels(),
+            Transfer::Linear,
+            Texels::F16(texels),
+        )
     })
 }
 

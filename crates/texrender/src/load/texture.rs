@@ -93,10 +93,11 @@ fn sampler_state(sampler: &gltf::texture::Sampler) -> SamplerState {
         Some(MinFilter::LinearMipmapLinear) | None => (Filter::Bilinear, MipFilter::Linear),
     };
     SamplerState {
-        address: [address(sampler.wrap_s()), address(sampler.wrap_t())],
+        address: [address(sampler.wrap_s()), address(sampler.wrap_t())].into(),
         magnify,
         minify,
         mip,
         max_anisotropy: 1.0,
+        ..SamplerState::default()
     }
 }

@@ -91,6 +91,10 @@ pub struct LitKernel {
 /// [`MaterialModel`].
 #[derive(Clone, Debug)]
 #[expect(missing_docs, reason = "the fields are documented at MaterialModel")]
+#[allow(
+    clippy::large_enum_variant,
+    reason = "one a material, and most materials are of the first kind"
+)]
 pub enum Reflectance {
     /// glTF 2.0's core model.
     MetallicRoughness {

@@ -1,5 +1,3 @@
-//! The cube chart.
-//!
 //! Faces as Vulkan and OpenGL define them, seen from inside the cube, s to the right and t down:
 //!
 //! ```text
@@ -12,7 +10,7 @@
 //!             +----+             (a left-handed picture: the cube is seen from within as if from outside)
 //! ```
 
-use glam::{Vec2, Vec3};
+use glam::{IVec2, UVec2, Vec2, Vec3};
 
 /// A face of a cube map, named by the axis it is centred on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -54,9 +52,55 @@ impl CubeFace {
         }
     }
 
+    /// The texel that touches texel `ij` of a face of `size`² texels from outside, where `ij` is one step beyond one
+    /// edge: its face and its index there. Texels of this face give themselves; beyond two edges at once, where
+    /// three faces meet, there is none.
+    ///
+    /// # Source
+    /// Direct3D 11.3 functional specification, 7.18.12 (edges and corners).
+    /// # Examples
+    /// ```
+    /// use glam::{IVec2, UVec2};
+    /// use sampler::cube::CubeFace;
+    /// // To the right of +Z lies +X.
+    /// let neighbour = CubeFace::PosZ.touching(4, IVec2::new(4, 2));
+    /// assert_eq!(neighbour, Some((CubeFace::PosX, UVec2::new(0, 2))));
+    /// ```
+    pub fn touching(self, size: u32, ij: IVec2) -> Option<(Self, UVec2)> {
+        let n = i32::try_from(size).ok()?;
+        let inside = |k: i32| (0..n).contains(&k);
+        match (inside(ij.x), inside(ij.y)) {
+            (true, true) => Some((self, ij.as_uvec2())),
+            (false, false) => None,
+            _ => {
+                // Texel centres on the cube [−n, n]³ have odd or even coordinates of one kind; all integers.
+                let [centre, s, t] = self.axes().map(|axis| axis.as_ivec3());
+                let along = 2 * ij + 1 - n;
+                let beyond = if inside(ij.x) {
+                    t * along.y.signum()
+                } else {
+                    s * along.x.signum()
+                };
+                let kept = if inside(ij.x) {
+                    s * along.x
+                } else {
+                    t * along.y
+                };
+                // Over the edge: the neighbour's plane, one half texel below this face's.
+                let point = beyond * n + kept + centre * (n - 1);
+                let neighbour = Self::ALL
+                    .into_iter()
+                    .find(|face| face.axes()[0].as_ivec3() == beyond)?;
+                let [_, s, t] = neighbour.axes().map(|axis| axis.as_ivec3());
+                let ij = (IVec2::new(point.dot(s), point.dot(t)) + n - 1) / 2;
+                Some((neighbour, ij.as_uvec2()))
+            }
+        }
+    }
+
     /// The point of the cube [−1, 1]³ at `st` of this face; st beyond 0..1 continues in the face's plane.
     #[inline]
-    pub(crate) fn point(self, st: Vec2) -> Vec3 {
+    pub fn point(self, st: Vec2) -> Vec3 {
         let [centre, s, t] = self.axes();
         centre + s * (2.0 * st.x - 1.0) + t * (2.0 * st.y - 1.0)
     }
@@ -70,14 +114,14 @@ impl CubeFace {
 /// `direction`: any length. A zero or non-finite direction gives the centre of +Z.
 ///
 /// # Accuracy
-/// Within 1.2e-7 in s and t; checked by `tests/properties/charts.rs`.
+/// Within 1.2e-7 in s and t; checked by `tests/properties/cube.rs`.
 /// # Source
 /// Vulkan 1.3, "Cube Map Face Selection" and "Cube Map Coordinate Transformation".
 /// # Examples
 /// ```
-/// use envmap::CubeFace;
+/// use sampler::cube::CubeFace;
 /// use glam::{Vec2, Vec3};
-/// let (face, st) = envmap::direction_to_cube(Vec3::new(2.0, 0.0, -1.0));
+/// let (face, st) = sampler::cube::direction_to_cube(Vec3::new(2.0, 0.0, -1.0));
 /// assert_eq!((face, st), (CubeFace::PosX, Vec2::new(0.75, 0.5)));
 /// ```
 #[inline]
@@ -114,12 +158,12 @@ pub fn direction_to_cube(direction: Vec3) -> (CubeFace, Vec2) {
 /// `st`: 0..=1 on the face; beyond, the face's plane continues. Non-finite input gives non-finite output.
 ///
 /// # Accuracy
-/// Within 2e-7; checked by `tests/properties/charts.rs`.
+/// Within 2e-7; checked by `tests/properties/cube.rs`.
 /// # Examples
 /// ```
-/// use envmap::CubeFace;
+/// use sampler::cube::CubeFace;
 /// use glam::{Vec2, Vec3};
-/// assert_eq!(envmap::cube_to_direction(CubeFace::NegY, Vec2::splat(0.5)), Vec3::NEG_Y);
+/// assert_eq!(sampler::cube::cube_to_direction(CubeFace::NegY, Vec2::splat(0.5)), Vec3::NEG_Y);
 /// ```
 pub fn cube_to_direction(face: CubeFace, st: Vec2) -> Vec3 {
     face.point(st).normalize()

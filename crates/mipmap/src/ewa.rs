@@ -1,0 +1,391 @@
+//! The elliptical weighted average: a Gaussian pixel, projected into the texture.
+//!
+//! A pixel weighted by a Gaussian of σ = ½ sees the texture through a Gaussian of covariance σ² J Jᵀ. The texture is
+//! the bilinear reconstruction of level 0, whose tent adds ⅙ texel² to any filter made of its texels. So the texels
+//! of level k are weighted by a Gaussian of covariance
+//!
+//! ```text
+//! W = σ² J Jᵀ + (4⁻ᵏ + 1)/12 · I          J in texels of level k
+//! ```
+//!
+//! cut where dᵀ W⁻¹ d = R². On level 0 the second term is the tent's ⅙. On coarser ones the tent shrinks to nothing
+//! and 1/12 is left: without it a Gaussian of half a texel would alias where the minor axis is one texel wide (its
+//! sum over texels would ripple by 2·exp(−2π²W), 3 %; with it, 0.3 %). To reach 0 at the cut,
+//! w = exp(−dᵀW⁻¹d/2) − exp(−R²/2), and W is widened by what that takes off the variance. W is never singular: lines
+//! and points are footprints like others.
+//!
+//! Where the minor axis is less than a texel the tent is no Gaussian: there the reconstruction itself is averaged, on
+//! a lattice along the footprint's axes.
+
+use std::ops::RangeInclusive;
+use std::sync::OnceLock;
+
+use glam::{DMat2, DVec2, DVec4, Vec4};
+use sampler::{Addressing, Texture};
+
+use crate::footprint::{AxisLengths, Footprint};
+use crate::lod::round_to_f32;
+use crate::pyramid::Pyramid;
+use crate::sample::{SamplerState, sample};
+
+/// Standard deviation of the pixel, in pixels.
+const SIGMA: f64 = 0.5;
+
+/// How finely [`ewa`] reads, and so its error against a Gaussian pixel and its time.
+///
+/// The errors are RMSE on a checkered floor of full contrast, axis-aligned and turned, against the Gaussian of σ = ½
+/// projected by each pixel's footprint; `texrender frontier` measures them beside the times.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum EwaTier {
+    /// One level coarser than the minor axis asks for, cut at 3 σ: within 0.010.
+    Fast,
+    /// The level whose texel is the minor axis, cut at 3.5 σ: within 0.005.
+    #[default]
+    Standard,
+    /// One level finer, cut at 4 σ, aspects up to 64: within 0.004.
+    Best,
+}
+
+impl EwaTier {
+    /// All tiers, cheapest first.
+    pub const ALL: [Self; 3] = [Self::Fast, Self::Standard, Self::Best];
+
+    /// Greatest aspect that is followed; the minor axis of a longer footprint is widened to it.
+    pub fn max_anisotropy(self) -> f32 {
+        match self {
+            Self::Fast | Self::Standard => 16.0,
+            Self::Best => 64.0,
+        }
+    }
+
+    /// Added to λ of the minor axis.
+    fn bias(self) -> f32 {
+        match self {
+            Self::Fast => 1.0,
+            Self::Standard => 0.0,
+            Self::Best => -1.0,
+        }
+    }
+
+    /// R, where the Gaussian is cut.
+    fn cut(self) -> f64 {
+        match self {
+            Self::Fast => 3.0,
+            Self::Standard => 3.5,
+            Self::Best => 4.0,
+        }
+    }
+
+    fn window(self) -> &'static Window {
+        static WINDOWS: [OnceLock<Window>; 3] = [const { OnceLock::new() }; 3];
+        WINDOWS[self as usize].get_or_init(|| Window::new(self.cut()))
+    }
+}
+
+/// The part of a level, before the next, over which the two are blended.
+const BAND: f32 = 0.25;
+
+/// The colour under `footprint`, weighted by a Gaussian pixel of σ = ½: the elliptical weighted average.
+///
+/// Level ⌊λ⌋ with λ = log₂(minor axis) + the tier's bias, its texels weighted by a Gaussian that the footprint's
+/// axes shape; the module's source has the covariance. The last quarter of a level is blended with the next, so the
+/// result is continuous in every input. A constant comes back to the bit; weights are never negative, so the result
+/// stays within the texels read (by 3e-7 of their range where they are 8-bit: the sums are f32).
+///
+/// Target pixel kernel: the Gaussian of σ = ½ pixel, over the bilinear reconstruction of level 0, through the
+/// footprint as an affine map.
+///
+/// The cost is bounded: a footprint's minor axis is at least its major axis over [`EwaTier::max_anisotropy`], and
+/// where it is wider than a texel of the last level, or not finite, [`sample`] answers.
+///
+/// # Accuracy
+/// As [`EwaTier`] says; checked by `tests/properties/ewa.rs` and `tests/composition/frontier.rs`.
+/// # Source
+/// Greene and Heckbert 1986, "Creating Raster Omnimax Images from Multiple Perspective Views Using the Elliptical
+/// Weighted Average Filter"; Heckbert 1989, "Fundamentals of Texture Mapping and Image Warping", section 3.5 (the sum
+/// of covariances).
+/// # Examples
+/// ```
+/// use glam::{DVec2, UVec2, Vec2};
+/// use mipmap::{Content, EwaTier, Footprint, Pyramid, ewa};
+/// use sampler::{AddressMode, Texels, Texture, Transfer};
+/// let halves = Texture::new(UVec2::new(2, 1), 1, Transfer::Linear, Texels::F32(vec![0.0, 1.0]))?;
+/// let pyramid = Pyramid::build(halves, Content::Colour);
+/// let footprint = Footprint { st: DVec2::splat(0.5), dst_dx: Vec2::X * 0.5, dst_dy: Vec2::Y * 0.5 };
+/// // On the edge between the two, half of each.
+/// let colour = ewa(&pyramid, [AddressMode::Repeat; 2], EwaTier::Standard, &footprint);
+/// assert!((colour.x - 0.5).abs() < 1e-6);
+/// # Ok::<(), sampler::Error>(())
+/// ```
+pub fn ewa(
+    pyramid: &Pyramid,
+    address: impl Into<Addressing<2>>,
+    tier: EwaTier,
+    footprint: &Footprint,
+) -> Vec4 {
+    let address = address.into();
+    let lengths = AxisLengths::of(pyramid.size(), footprint.dst_dx, footprint.dst_dy);
+    let minor = lengths.minor.max(lengths.major / tier.max_anisotropy());
+    let lod = libm::log2f(minor) + tier.bias();
+    let last = (pyramid.levels() - 1) as f32;
+    if minor >= 1.0 && lod >= last {
+        let state = SamplerState {
+            address,
+            max_anisotropy: tier.max_anisotropy(),
+            ..SamplerState::default()
+        };
+        return sample(pyramid, &state, footprint);
+    }
+
+    // A quarter texel about a minor axis of one texel blends the lattice with the levels.
+    let magnified = f64::from((1.0 - minor) * 4.0).clamp(0.0, 1.0);
+    let from_lattice = |colour: DVec4| {
+        let lattice =
+            Lattice::new(&lengths, minor, tier).mean(pyramid.level(0), &address, footprint.st);
+        colour + (lattice - colour) * magnified
+    };
+    if magnified == 1.0 {
+        return from_lattice(DVec4::ZERO).as_vec4();
+    }
+    let covariance = lengths.covariance(minor) * (SIGMA * SIGMA);
+    let colour = from_levels(
+        pyramid,
+        &address,
+        tier,
+        lod.clamp(0.0, last),
+        footprint.st,
+        covariance,
+    );
+    if magnified > 0.0 {
+        from_lattice(colour).as_vec4()
+    } else {
+        colour.as_vec4()
+    }
+}
+
+/// `lod`: 0 to the last level. `covariance`: of the footprint, in texels of level 0.
+#[allow(
+    clippy::cast_possible_truncation,
+    reason = "0 ≤ lod, and truncation is the floor of it"
+)]
+fn from_levels(
+    pyramid: &Pyramid,
+    address: &Addressing<2>,
+    tier: EwaTier,
+    lod: f32,
+    st: DVec2,
+    covariance: DMat2,
+) -> DVec4 {
+    let at = |level: u32| {
+        let texture = pyramid.level(level);
+        let size = texture.size().as_dvec2();
+        let scale = size / pyramid.size().as_dvec2();
+        let reduction = DMat2::from_diagonal(scale);
+        // 4⁻ᵏ by each axis' own ratio.
+        let own = DMat2::from_diagonal((scale * scale + 1.0) / 12.0);
+        let window = tier.window();
+        let w = (reduction * covariance * reduction + own) * window.widening;
+        Ellipse::new(w, window).mean(texture, address, st * size - 0.5)
+    };
+    let level = lod as u32;
+    let coarser = (lod - level as f32 - (1.0 - BAND)) / BAND;
+    let colour = at(level);
+    if coarser > 0.0 {
+        colour + (at(level + 1) - colour) * f64::from(coarser)
+    } else {
+        colour
+    }
+}
+
+/// exp(−q/2) − exp(−R²/2) for q in 0..R², tabulated.
+struct Window {
+    /// R².
+    reach: f64,
+    /// What the covariance is multiplied by, so that the cut Gaussian has the wanted one.
+    widening: f64,
+    /// Entries a unit of q.
+    density: f32,
+    table: Vec<f32>,
+}
+
+impl Window {
+    const ENTRIES: u16 = 1024;
+
+    fn new(cut: f64) -> Self {
+        let reach = cut * cut;
+        let half = 0.5 * reach;
+        let edge = libm::exp(-half);
+        // ∫ (e⁻ᵘ − e⁻ᵁ) du and ∫ (e⁻ᵘ − e⁻ᵁ) u du over 0..U, with u = r²/2.
+        let mass = 1.0 - edge - half * edge;
+        let second = 1.0 - (1.0 + half) * edge - 0.5 * half * half * edge;
+        let step = reach / f64::from(Self::ENTRIES);
+        Self {
+            reach,
+            widening: mass / second,
+            density: round_to_f32(1.0 / step),
+            table: (0..=Self::ENTRIES + 1)
+                .map(|k| round_to_f32((libm::exp(-0.5 * step * f64::from(k)) - edge).max(0.0)))
+                .collect(),
+        }
+    }
+
+    /// The weight at q ≥ 0, interpolated: within 8e-6 (the square of a step of 16/1024, times ⅛ of f″ = ¼).
+    #[inline(always)]
+    #[allow(
+        clippy::cast_possible_truncation,
+        reason = "q ≥ 0, and truncation is the floor of it"
+    )]
+    fn weight(&self, q: f32) -> f32 {
+        let position = q * self.density;
+        let index = (position as usize).min(self.table.len() - 2);
+        let fraction = position - index as f32;
+        self.table[index] + (self.table[index + 1] - self.table[index]) * fraction
+    }
+}
+
+/// dᵀ W⁻¹ d < R².
+struct Ellipse<'a> {
+    /// q = a x² + 2 b x y + c y².
+    a: f64,
+    b: f64,
+    c: f64,
+    /// Greatest |y| inside.
+    height: f64,
+    window: &'a Window,
+}
+
+impl<'a> Ellipse<'a> {
+    fn new(w: DMat2, window: &'a Window) -> Self {
+        let inverse = w.inverse();
+        Self {
+            a: inverse.x_axis.x,
+            b: inverse.x_axis.y,
+            c: inverse.y_axis.y,
+            height: (window.reach * w.y_axis.y).sqrt(),
+            window,
+        }
+    }
+
+    /// The weighted mean of the texels around `centre`, in texel space with centres at integers.
+    fn mean(&self, texture: &Texture, address: &Addressing<2>, centre: DVec2) -> DVec4 {
+        let origin = texture
+            .weighted_row(
+                address,
+                nearest(centre.x),
+                nearest(centre.y),
+                &[1.0],
+                Vec4::ZERO,
+            )
+            .as_vec4();
+        let mut weights = [0.0f32; CHUNK];
+        let (mut sum, mut total) = (DVec4::ZERO, 0.0f64);
+        for j in inside(centre.y, self.height) {
+            // The chord: a x² + 2 b y x + c y² = R².
+            let y = j as f64 - centre.y;
+            let chord = self.window.reach - (self.c - self.b * self.b / self.a) * y * y;
+            if chord <= 0.0 {
+                continue;
+            }
+            let columns = inside(centre.x - self.b * y / self.a, (chord / self.a).sqrt());
+            for first in columns.clone().step_by(CHUNK) {
+                let count = (columns.end() + 1 - first).min(CHUNK as i64);
+                let weights = &mut weights[..usize::try_from(count).unwrap_or(0)];
+                total += self.fill(weights, first as f64 - centre.x, y);
+                sum += texture.weighted_row(address, first, j, weights, origin);
+            }
+        }
+        if total > 0.0 {
+            origin.as_dvec4() + sum / total
+        } else {
+            origin.as_dvec4()
+        }
+    }
+
+    /// Weights of the texels from (x, y) on to the right; returns their sum.
+    fn fill(&self, weights: &mut [f32], x: f64, y: f64) -> f64 {
+        let mut q = (self.a * x + 2.0 * self.b * y) * x + self.c * y * y;
+        let mut step = self.a * (2.0 * x + 1.0) + 2.0 * self.b * y;
+        let mut total = 0.0f32;
+        for weight in weights.iter_mut() {
+            // Rounding may take q below 0 at the centre.
+            *weight = self.window.weight(round_to_f32(q).max(0.0));
+            total += *weight;
+            q += step;
+            step += 2.0 * self.a;
+        }
+        f64::from(total)
+    }
+}
+
+/// Texels of a row that are weighed at a time.
+const CHUNK: usize = 64;
+
+/// The integers within `reach` of `centre`.
+#[allow(
+    clippy::cast_possible_truncation,
+    reason = "texel indices of a lookup; saturates for coordinates beyond any texture"
+)]
+fn inside(centre: f64, reach: f64) -> RangeInclusive<i64> {
+    (centre - reach).ceil() as i64..=(centre + reach).floor() as i64
+}
+
+#[allow(
+    clippy::cast_possible_truncation,
+    reason = "a texel index of a lookup; saturates for coordinates beyond any texture"
+)]
+fn nearest(centre: f64) -> i64 {
+    centre.round() as i64
+}
+
+/// The Gaussian over the bilinear reconstruction, at points along the axes of a footprint: σ apart, and not farther
+/// apart than a texel.
+struct Lattice {
+    /// From one point to the next, in st, and in standard deviations.
+    along: DVec2,
+    apart: f64,
+    across: DVec2,
+    /// Points on each side of the middle.
+    side: i32,
+    window: &'static Window,
+    cut: f64,
+}
+
+impl Lattice {
+    #[allow(
+        clippy::cast_possible_truncation,
+        reason = "the aspect is bounded by the tier, and truncation is the floor"
+    )]
+    fn new(lengths: &AxisLengths, minor: f32, tier: EwaTier) -> Self {
+        let window = tier.window();
+        let [along, across] = lengths.axes(minor);
+        let sigma = SIGMA * window.widening.sqrt();
+        let apart = (1.0 / (f64::from(lengths.major) * sigma)).min(1.0);
+        Self {
+            along: along * (sigma * apart),
+            apart,
+            across: across * sigma,
+            side: (tier.cut() / apart) as i32,
+            window,
+            cut: tier.cut(),
+        }
+    }
+
+    fn mean(&self, texture: &Texture, address: &Addressing<2>, st: DVec2) -> DVec4 {
+        let at = |st| sampler::bilinear(texture, *address, st).as_dvec4();
+        let middle = at(st);
+        let (mut sum, mut total) = (DVec4::ZERO, 0.0);
+        let rows = inside(0.0, self.cut);
+        for j in rows {
+            for i in -self.side..=self.side {
+                let [x, y] = [f64::from(i) * self.apart, j as f64];
+                let q = x * x + y * y;
+                if q < self.window.reach {
+                    let weight = f64::from(self.window.weight(round_to_f32(q)));
+                    sum += (at(st + self.along * f64::from(i) + self.across * y) - middle) * weight;
+                    total += weight;
+                }
+            }
+        }
+        middle + sum / total
+    }
+}
