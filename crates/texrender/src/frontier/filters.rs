@@ -1,8 +1,11 @@
 //! The filters that are measured: one line each.
 
 use glam::Vec4;
-use mipmap::{Content, Footprint, MipFilter, Pyramid, SamplerState, sample};
-use sampler::Filter;
+use mipmap::{
+    Content, EwaTier, Footprint, LodRule, MipFilter, ProbeWeights, Pyramid, SamplerState, ewa,
+    sample,
+};
+use sampler::{AddressMode, Cubic, Filter, Precision};
 
 use super::kernel::{PixelKernel, Reconstruction, Target};
 use super::texture::TestTexture;
@@ -50,51 +53,149 @@ impl Prepared {
 /// All filters over `prepared`, in the order of the report.
 pub fn filter_settings(prepared: &Prepared) -> Vec<FilterSetting<'_>> {
     let pyramid = &prepared.pyramid;
-    let point = |reconstruction| Target {
-        kernel: PixelKernel::Point,
-        reconstruction,
-    };
-    let state = |filter, mip, max_anisotropy| SamplerState {
-        magnify: filter,
-        minify: filter,
-        mip,
-        max_anisotropy,
-        ..SamplerState::default()
-    };
-    let pyramid_filter = |name: &str, own, state: SamplerState| {
-        let lookup = each(move |footprint| sample(pyramid, &state, footprint));
-        entry(name, "exact", own, lookup)
-    };
-    let [square, axes] = [PixelKernel::Square, PixelKernel::Axes].map(Target::bilinear);
-    use Filter::{Bilinear, Nearest};
-    use MipFilter::{Linear, None};
-    let mut all = vec![
-        pyramid_filter(
-            "nearest",
-            point(Reconstruction::Nearest),
-            state(Nearest, None, 1.0),
-        ),
-        pyramid_filter(
-            "bilinear",
-            point(Reconstruction::Bilinear),
-            state(Bilinear, None, 1.0),
-        ),
-        pyramid_filter(
-            "bilinear_mip",
-            square,
-            state(Bilinear, MipFilter::Nearest, 1.0),
-        ),
-        pyramid_filter("trilinear", square, state(Bilinear, Linear, 1.0)),
-    ];
-    for n in [2u8, 4, 8, 16, 32, 64] {
-        let name = format!("aniso{n}");
-        all.push(pyramid_filter(
-            &name,
-            axes,
-            state(Bilinear, Linear, n.into()),
-        ));
-    }
+    let mut all = single_level(pyramid);
+    all.extend(isotropic(pyramid));
+    all.extend(probe_lines(pyramid));
+    all.extend(elliptic(pyramid));
     all
+}
+
+/// Level 0 alone, whatever the footprint.
+fn single_level(pyramid: &Pyramid) -> Vec<FilterSetting<'_>> {
+    use Reconstruction::{BSpline, Bilinear, CatmullRom, Mitchell, Nearest};
+    let line = |filter: &str, setting: &str, reconstruction, kernel, precision| {
+        let own = Target {
+            kernel: PixelKernel::Point,
+            reconstruction,
+        };
+        let state = SamplerState {
+            magnify: kernel,
+            minify: kernel,
+            mip: MipFilter::None,
+            max_anisotropy: 1.0,
+            precision,
+            ..SamplerState::default()
+        };
+        from_pyramid(filter, setting, own, pyramid, state)
+    };
+    let cubic = |setting, reconstruction, kernel| {
+        let kernel = Filter::Bicubic(kernel);
+        line("bicubic", setting, reconstruction, kernel, Precision::Exact)
+    };
+    vec![
+        line(
+            "nearest",
+            "exact",
+            Nearest,
+            Filter::Nearest,
+            Precision::Exact,
+        ),
+        line(
+            "bilinear",
+            "exact",
+            Bilinear,
+            Filter::Bilinear,
+            Precision::Exact,
+        ),
+        line(
+            "bilinear",
+            "fixed",
+            Bilinear,
+            Filter::Bilinear,
+            Precision::Fixed,
+        ),
+        cubic("b-spline", BSpline, Cubic::BSpline),
+        cubic("catmull-rom", CatmullRom, Cubic::CatmullRom),
+        cubic("mitchell", Mitchell, Cubic::Mitchell),
+    ]
+}
+
+/// One lookup in one or two levels of squares.
+fn isotropic(pyramid: &Pyramid) -> Vec<FilterSetting<'_>> {
+    let line = |filter: &str, setting: &str, state: SamplerState| {
+        let state = SamplerState {
+            max_anisotropy: 1.0,
+            ..state
+        };
+        let own = Target::bilinear(PixelKernel::Square);
+        from_pyramid(filter, setting, own, pyramid, state)
+    };
+    let [linear, nearest] = [MipFilter::Linear, MipFilter::Nearest].map(|mip| SamplerState {
+        mip,
+        ..SamplerState::default()
+    });
+    vec![
+        line("bilinear_mip", "exact", nearest),
+        line("trilinear", "exact", linear),
+        line("trilinear", "fixed", fixed(linear)),
+        line("trilinear", "max-length", max_length(linear)),
+    ]
+}
+
+/// Lookups in a row along the footprint's major axis.
+fn probe_lines(pyramid: &Pyramid) -> Vec<FilterSetting<'_>> {
+    let line = |n: u8, setting: &str, kernel, change: fn(SamplerState) -> SamplerState| {
+        let state = change(SamplerState {
+            max_anisotropy: n.into(),
+            ..SamplerState::default()
+        });
+        let own = Target::bilinear(kernel);
+        from_pyramid(&format!("aniso{n}"), setting, own, pyramid, state)
+    };
+    let mut all: Vec<_> = [2, 4, 8, 16, 32, 64]
+        .map(|n| line(n, "exact", PixelKernel::Axes, |state| state))
+        .into();
+    all.extend([4, 16].map(|n| line(n, "fixed", PixelKernel::Axes, fixed)));
+    all.push(line(16, "max-length", PixelKernel::Axes, max_length));
+    all.extend([4, 16].map(|n| line(n, "gaussian", PixelKernel::Ellipse, gaussian)));
+    all
+}
+
+/// Every texel under an ellipse.
+fn elliptic(pyramid: &Pyramid) -> Vec<FilterSetting<'_>> {
+    let line = |setting: &str, tier| {
+        let own = Target::bilinear(PixelKernel::Ellipse);
+        let repeat = [AddressMode::Repeat; 2];
+        let lookup = each(move |footprint| ewa(pyramid, repeat, tier, footprint));
+        entry("ewa", setting, own, lookup)
+    };
+    vec![
+        line("fast", EwaTier::Fast),
+        line("standard", EwaTier::Standard),
+        line("best", EwaTier::Best),
+    ]
+}
+
+fn fixed(state: SamplerState) -> SamplerState {
+    SamplerState {
+        precision: Precision::Fixed,
+        ..state
+    }
+}
+
+fn max_length(state: SamplerState) -> SamplerState {
+    SamplerState {
+        lod_rule: LodRule::MaxLength,
+        ..state
+    }
+}
+
+fn gaussian(state: SamplerState) -> SamplerState {
+    SamplerState {
+        probe_weights: ProbeWeights::Gaussian,
+        ..state
+    }
+}
+
+fn from_pyramid<'a>(
+    filter: &str,
+    setting: &str,
+    own: Target,
+    pyramid: &'a Pyramid,
+    state: SamplerState,
+) -> FilterSetting<'a> {
+    let lookup = each(move |footprint| sample(pyramid, &state, footprint));
+    entry(filter, setting, own, lookup)
 }
 
 fn entry<'a>(filter: &str, setting: &str, own: Target, lookup: Lookup<'a>) -> FilterSetting<'a> {

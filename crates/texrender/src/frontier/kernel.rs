@@ -20,6 +20,9 @@ pub enum PixelKernel {
     Box,
     /// A Gaussian about the pixel's centre, σ = ½ pixel, cut at 3σ in x and in y, through the true perspective.
     Gaussian,
+    /// The Gaussian pixel through the footprint alone, as if the texture were parallel to the screen around the pixel:
+    /// what elliptical filters approximate.
+    Ellipse,
     /// A square in texture space along its axes, as wide as the footprint's major axis: what an isotropic mip lookup
     /// approximates.
     Square,
@@ -38,6 +41,12 @@ pub enum Reconstruction {
     Nearest,
     /// The four texels around the point, weighted linearly.
     Bilinear,
+    /// The sixteen texels around the point, weighted by the cubic kernel with (B, C) = (1, 0).
+    BSpline,
+    /// The same with (0, ½).
+    CatmullRom,
+    /// The same with (⅓, ⅓).
+    Mitchell,
 }
 
 /// What an error is taken against: a kernel, and what it averages.
@@ -66,6 +75,7 @@ impl PixelKernel {
             Self::Point => "point",
             Self::Box => "box",
             Self::Gaussian => "Gaussian",
+            Self::Ellipse => "ellipse",
             Self::Square => "square",
             Self::Axes => "axes",
             Self::Bounds => "bounds",

@@ -174,6 +174,7 @@ fn noise(references: &HashMap<Target, Reference>) -> Vec<(PixelKernel, f64)> {
     let sampled = [
         PixelKernel::Box,
         PixelKernel::Gaussian,
+        PixelKernel::Ellipse,
         PixelKernel::Square,
         PixelKernel::Axes,
         PixelKernel::Bounds,

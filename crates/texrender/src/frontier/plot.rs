@@ -189,15 +189,12 @@ impl Plot {
             .y_desc(&self.error_label)
             .draw()?;
 
-        // The front of what is ours.
-        let ours: Vec<usize> = (0..self.points.len())
-            .filter(|&k| !matches!(self.points[k].family, Family::Peer(_)))
-            .collect();
-        let our_points: Vec<(f64, f64)> = ours.iter().map(|&k| shown[k]).collect();
-        let front: Vec<usize> = pareto_front(&our_points)
-            .into_iter()
-            .map(|k| ours[k])
-            .collect();
+        // The front of what is ours, and of each peer.
+        let (front, peers) = self.fronts(&shown);
+        for (family, peer) in peers {
+            let line = peer.iter().map(|&k| shown[k]);
+            chart.draw_series(LineSeries::new(line, family.colour().mix(0.5)))?;
+        }
         let line = front.iter().map(|&k| shown[k]);
         chart.draw_series(LineSeries::new(line, INK.mix(0.55).stroke_width(2)))?;
 
