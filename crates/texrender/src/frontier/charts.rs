@@ -2,7 +2,7 @@
 
 use super::measure::{KERNELS, Sheet};
 use super::peers::Peer;
-use super::plot::{Family, Plot, Point, pareto_front};
+use super::plot::{Family, Front, Plot, Point, pareto_front};
 use super::table::Row;
 
 /// A plot with the name of its file.
@@ -39,8 +39,12 @@ impl Sheet {
             .collect()
     }
 
-    /// Which of [`Sheet::rows_against`] are on the Pareto front of time a lookup.
+    /// Which of [`Sheet::rows_against`] are on the Pareto front of time a lookup; none against the own kernels, which
+    /// differ.
     pub(super) fn front(&self, kernel: &str) -> Vec<usize> {
+        if kernel == "own" {
+            return Vec::new();
+        }
         let rows = self.rows_against(kernel);
         let points: Vec<(f64, f64)> = rows
             .iter()
@@ -75,6 +79,11 @@ impl Sheet {
                 title: format!("{}, against {against}", self.title()),
                 time_label: "nanoseconds a lookup, one thread".to_owned(),
                 error_label: "RMSE".to_owned(),
+                front: if kernel == "own" {
+                    Front::LeftOut
+                } else {
+                    Front::Drawn
+                },
                 points: points.collect(),
             },
         }
@@ -114,6 +123,7 @@ impl Sheet {
                 ),
                 time_label: "milliseconds a frame".to_owned(),
                 error_label: "RMSE".to_owned(),
+                front: Front::Drawn,
                 points: ours.chain(theirs).collect(),
             },
         })

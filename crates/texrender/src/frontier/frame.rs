@@ -18,9 +18,15 @@ const RUN: usize = 128;
 ///
 /// `frame`: as many pixels as the scene's size, row by row.
 pub fn draw(scene: &Scene, lookup: &Lookup<'_>, frame: &mut [[u8; 4]]) {
+    draw_every(1, scene, lookup, frame);
+}
+
+/// As [`draw`], of rows the middle one of each `step` only.
+pub(super) fn draw_every(step: u32, scene: &Scene, lookup: &Lookup<'_>, frame: &mut [[u8; 4]]) {
     frame
         .par_chunks_mut(scene.size.x as usize)
         .zip(0..scene.size.y)
+        .filter(|(_, y)| y % step == step / 2)
         .for_each(|(row, y)| draw_part(scene, lookup, UVec2::new(0, y), row));
 }
 

@@ -7,7 +7,7 @@ use super::scene::ExactFootprint;
 /// Standard deviation of the Gaussian pixel, in pixels.
 pub const GAUSSIAN_SIGMA: f64 = 0.5;
 /// Where the Gaussian pixel ends in x and in y, in standard deviations.
-pub const GAUSSIAN_CUT: f64 = 3.0;
+pub const GAUSSIAN_CUT: f64 = 4.0;
 
 /// The region and weight that a texture is averaged with for one pixel.
 ///
@@ -18,7 +18,7 @@ pub enum PixelKernel {
     Point,
     /// The pixel's unit square, through the true perspective.
     Box,
-    /// A Gaussian about the pixel's centre, σ = ½ pixel, cut at 3σ in x and in y, through the true perspective.
+    /// A Gaussian about the pixel's centre, σ = ½ pixel, cut at 4σ in x and in y, through the true perspective.
     Gaussian,
     /// The Gaussian pixel through the footprint alone, as if the texture were parallel to the screen around the pixel:
     /// what elliptical filters approximate.

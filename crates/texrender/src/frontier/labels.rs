@@ -3,9 +3,9 @@
 /// A rectangle in pixels: left, top, right, bottom.
 pub(super) type Rectangle = [i32; 4];
 
-/// Height of a label, and what a character of it takes across, in pixels at 12 pixels a line.
-const HEIGHT: i32 = 14;
-const CHARACTER: f64 = 6.6;
+/// Height of a label, and what a character of it takes across, in pixels.
+const HEIGHT: i32 = 15;
+const CHARACTER: f64 = 6.4;
 /// Radius of what a point itself covers.
 const MARKER: i32 = 6;
 /// Distances of a label from its point that are tried, in this order.
@@ -98,6 +98,6 @@ mod tests {
     fn a_lonely_label_stands_to_the_right() {
         let places = place(&[(100, 100)], &["abc".to_owned()], [0, 0, 300, 200]);
         let [left, top, _, bottom] = places[0].unwrap();
-        assert_eq!((left, top, bottom), (109, 93, 107));
+        assert_eq!((left, top, bottom), (109, 93, 108));
     }
 }

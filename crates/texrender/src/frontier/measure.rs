@@ -52,6 +52,7 @@ impl Effort {
             passes: 5,
             frames: 5,
             frame_seconds: 0.1,
+            longest_frame_seconds: 0.25,
         },
         crops: Crops::Made(SampleCount {
             strata: [8, 16, 32],
@@ -70,6 +71,7 @@ impl Effort {
             passes: 11,
             frames: 15,
             frame_seconds: 1.5,
+            longest_frame_seconds: 3.0,
         },
         crops: Crops::Made(SampleCount {
             strata: [16, 32, 64],

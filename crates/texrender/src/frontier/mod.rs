@@ -48,7 +48,7 @@ pub use frame::{CLEAR, draw};
 pub use kernel::{GAUSSIAN_CUT, GAUSSIAN_SIGMA, PixelKernel, Reconstruction, Target, ellipse_axes};
 pub use measure::{Crops, Effort, KERNELS, Sheet};
 pub use peers::Peer;
-pub use plot::{Family, Plot, Point, pareto_front};
+pub use plot::{Family, Front, Plot, Point, pareto_front};
 pub use reference::{Reference, SampleCount, reference};
 pub use save::make_folder;
 pub use scene::{CROP_SIZE, Crop, ExactFootprint, Homography, Lattice, Scene, SceneTextures};

@@ -72,7 +72,8 @@ fn introduction(frontier: &Frontier, command: &str) -> String {
          rounding to 8 bits.</li>\n\
          <li>Time a lookup: one thread, consecutive pixels of rows spread over the frame, footprints ready, the best of \
          {passes} passes over all filters. Time a frame: {threads} threads; clear, footprint of each pixel, lookup, \
-         store; the median of up to {frames} frames, fewer for slow filters. Both are taken with a scene’s first texture \
+         store; the median of up to {frames} frames, fewer for slow filters, of which rows are left out where a frame \
+         would take over {longest} s, and the time multiplied. Both are taken with a scene’s first texture \
          of a size and hold for the others, since no filter looks at what a texel is.</li>\n\
          <li>Textures are 8-bit RGBA, linear, repeated; coarser levels by the box.</li>\n</ul>\n",
         legend = legend(frontier),
@@ -81,6 +82,7 @@ fn introduction(frontier: &Frontier, command: &str) -> String {
         passes = frontier.effort.timing.passes,
         threads = frontier.threads,
         frames = frontier.effort.timing.frames,
+        longest = frontier.effort.timing.longest_frame_seconds,
     )
 }
 

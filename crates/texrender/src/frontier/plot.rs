@@ -7,10 +7,10 @@ use plotters::style::text_anchor::{HPos, Pos, VPos};
 use super::labels::{self, Rectangle};
 
 /// Errors below this are drawn at it: a logarithmic axis has no zero.
-pub(super) const LEAST_ERROR: f64 = 1e-5;
+pub(super) const LEAST_ERROR: f64 = 1e-4;
 
 /// Width and height of a plot, in pixels.
-const SIZE: (u32, u32) = (920, 560);
+const SIZE: (u32, u32) = (960, 600);
 /// Room for what is written below and left of the axes, and beyond their other ends.
 const BELOW: i32 = 52;
 const LEFT: i32 = 68;
@@ -112,8 +112,19 @@ pub struct Plot {
     pub time_label: String,
     /// What the error is against.
     pub error_label: String,
+    /// Whether the points' errors can be compared.
+    pub front: Front,
     /// The points; labels are placed in this order.
     pub points: Vec<Point>,
+}
+
+/// Whether a plot has a Pareto front.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Front {
+    /// All errors are against the same: a line joins the best.
+    Drawn,
+    /// Each error is against something else.
+    LeftOut,
 }
 
 /// Indices of the points that no other beats in both coordinates, by growing time.
@@ -138,7 +149,8 @@ type Drawn<T> = Result<T, Box<dyn std::error::Error>>;
 type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 
 impl Plot {
-    /// The plot as SVG: logarithmic axes, the Pareto front of what is not a peer as a line, a label at each point.
+    /// The plot as SVG: logarithmic axes, a label at each point, the Pareto front of what is not a peer as a line, those
+    /// of peers as thin ones.
     ///
     /// # Panics
     /// If there is no point.
@@ -164,7 +176,7 @@ impl Plot {
             range(shown.iter().map(|p| p.0)),
             range(shown.iter().map(|p| p.1)),
         ];
-        let caption = ("sans-serif", 17).into_font().color(&INK);
+        let caption = ("sans-serif", 20).into_font().color(&INK);
         let mut chart = ChartBuilder::on(&area)
             .margin(MARGIN)
             .caption(&self.title, caption)
@@ -183,8 +195,8 @@ impl Plot {
             .y_labels(20)
             .x_label_formatter(&|x| number(*x))
             .y_label_formatter(&|y| number(*y))
-            .label_style(("sans-serif", 13).into_font().color(&INK))
-            .axis_desc_style(("sans-serif", 14).into_font().color(&INK))
+            .label_style(("sans-serif", 15).into_font().color(&INK))
+            .axis_desc_style(("sans-serif", 17).into_font().color(&INK))
             .x_desc(&self.time_label)
             .y_desc(&self.error_label)
             .draw()?;
@@ -228,7 +240,10 @@ impl Plot {
         let peers = peers
             .into_iter()
             .map(|peer| (peer, front_of(&|family| family == peer)));
-        (front_of(&|family| !is_peer(family)), peers.collect())
+        match self.front {
+            Front::Drawn => (front_of(&|family| !is_peer(family)), peers.collect()),
+            Front::LeftOut => (Vec::new(), Vec::new()),
+        }
     }
 
     fn draw_labels(&self, area: &Area<'_>, points: &[(i32, i32)], within: Rectangle) -> Drawn<()> {
@@ -249,7 +264,7 @@ impl Plot {
             if dx * dx + dy * dy > 12 * 12 {
                 area.draw(&PathElement::new(vec![point, near], QUIET.mix(0.6)))?;
             }
-            let style = ("sans-serif", 12)
+            let style = ("sans-serif", 15)
                 .into_font()
                 .color(&colour)
                 .pos(Pos::new(HPos::Center, VPos::Center));
@@ -347,6 +362,7 @@ mod tests {
             title: "a & b".to_owned(),
             time_label: "ns".to_owned(),
             error_label: "RMSE".to_owned(),
+            front: Front::Drawn,
             points: vec![point("nearest", 10.0, 0.0), point("aniso16", 200.0, 0.01)],
         }
         .to_svg();

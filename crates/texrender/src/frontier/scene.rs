@@ -93,7 +93,7 @@ pub struct Crop {
 }
 
 /// Width and height of a crop, at most, in pixels.
-pub const CROP_SIZE: UVec2 = UVec2::new(160, 120);
+pub const CROP_SIZE: UVec2 = UVec2::new(128, 96);
 
 /// Which textures a scene is drawn with.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -248,7 +248,7 @@ fn plane() -> Scene {
         lattice: Lattice {
             step: 4,
             offset: 2,
-            // One pixel of distance from the far edge, which is also as far as the Gaussian pixel reaches.
+            // One pixel of distance from the far edge.
             margin: [IVec2::new(0, -1), IVec2::new(1, 2)],
         },
         textures: SceneTextures::Open(&["checker", "zone", "noise"]),

@@ -9,6 +9,9 @@ use super::filters::FilterSetting;
 use super::frame;
 use super::scene::Scene;
 
+/// The greatest number of rows for one that is drawn.
+const MOST_ROWS_LEFT_OUT: u32 = 32;
+
 /// How much time is spent on times.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TimingEffort {
@@ -20,6 +23,8 @@ pub struct TimingEffort {
     pub frames: u32,
     /// Seconds after which a filter draws no more frames.
     pub frame_seconds: f64,
+    /// Seconds of one frame from which rows are left out, and the time multiplied.
+    pub longest_frame_seconds: f64,
 }
 
 /// Times of each filter on one scene.
@@ -36,9 +41,10 @@ impl Times {
         scene: &Scene,
         effort: &TimingEffort,
     ) -> Self {
+        let nanoseconds = nanoseconds_per_lookup(filters, scene, effort);
         Self {
-            nanoseconds_per_lookup: nanoseconds_per_lookup(filters, scene, effort),
-            milliseconds_per_frame: milliseconds_per_frame(filters, scene, effort),
+            milliseconds_per_frame: milliseconds_per_frame(filters, scene, effort, &nanoseconds),
+            nanoseconds_per_lookup: nanoseconds,
         }
     }
 }
@@ -67,21 +73,35 @@ fn nanoseconds_per_lookup(
 }
 
 /// Milliseconds of a frame by each filter, on the current pool: the median of up to `frames`.
+///
+/// `nanoseconds`: of a lookup by each filter, from which it is told which rows of the slowest are left out.
 fn milliseconds_per_frame(
     filters: &[FilterSetting<'_>],
     scene: &Scene,
     effort: &TimingEffort,
+    nanoseconds: &[f64],
 ) -> Vec<f64> {
-    let mut picture = vec![[0; 4]; (scene.size.x * scene.size.y) as usize];
+    let pixels = (scene.size.x * scene.size.y) as usize;
+    let mut picture = vec![[0; 4]; pixels];
     let mut times: Vec<Vec<f64>> = vec![Vec::new(); filters.len()];
+    let threads = rayon::current_num_threads() as f64;
     for _ in 0..effort.frames.max(1) {
-        for (filter, times) in filters.iter().zip(&mut times) {
+        for ((filter, times), nanoseconds) in filters.iter().zip(&mut times).zip(nanoseconds) {
             if times.iter().sum::<f64>() > effort.frame_seconds * 1e3 {
                 continue;
             }
+            let seconds = nanoseconds * 1e-9 * pixels as f64 / threads;
+            let step = (1..=MOST_ROWS_LEFT_OUT)
+                .find(|&step| seconds <= effort.longest_frame_seconds * f64::from(step))
+                .unwrap_or(MOST_ROWS_LEFT_OUT);
             let start = Instant::now();
-            frame::draw(scene, &filter.lookup, std::hint::black_box(&mut picture));
-            times.push(start.elapsed().as_secs_f64() * 1e3);
+            frame::draw_every(
+                step,
+                scene,
+                &filter.lookup,
+                std::hint::black_box(&mut picture),
+            );
+            times.push(start.elapsed().as_secs_f64() * 1e3 * f64::from(step));
         }
     }
     times.into_iter().map(median).collect()
