@@ -65,6 +65,7 @@ mod lod;
 mod probes;
 mod pyramid;
 mod sample;
+mod stochastic;
 
 pub use ewa::{EwaTier, ewa};
 pub use footprint::{Axes, Footprint, footprint_axes};
@@ -72,3 +73,4 @@ pub use lod::{LOD_MAX_ABS_ERROR, LodRule, lod};
 pub use probes::ProbeWeights;
 pub use pyramid::{Content, Pyramid};
 pub use sample::{MAX_ANISOTROPY, MipFilter, SamplerState, sample, sample_with_lod};
+pub use stochastic::{blue_noise, stochastic};

@@ -23,6 +23,8 @@
 
 use glam::{DVec2, DVec4};
 
+use crate::stochastic::picks_first;
+
 /// How the probes along a footprint's major axis are weighted.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum ProbeWeights {
@@ -100,6 +102,37 @@ impl Probes {
         }
     }
 
+    /// One probe's offset from the middle, by its weight.
+    pub(crate) fn pick(self, random: &mut f64) -> DVec2 {
+        let weight = |x: f64| match self.shape {
+            Shape::Box { .. } => 1.0,
+            Shape::Gaussian { falloff, .. } => gaussian(x, falloff),
+        };
+        let (side, end) = match self.shape {
+            Shape::Box { whole, end, .. } => (whole, end),
+            Shape::Gaussian { side, .. } => (side, 0.0),
+        };
+        let end_cell = f64::from(side) + 0.5 + 0.5 * end;
+        // From the ends inwards: each is picked or left, until the middle is left.
+        let mut total = weight(0.0) + 2.0 * end;
+        total += (1..=side)
+            .map(|probe| 2.0 * weight(f64::from(probe)))
+            .sum::<f64>();
+        let ends = (end > 0.0).then_some((end_cell, end));
+        let others = (1..=side)
+            .rev()
+            .map(|probe| (f64::from(probe), weight(f64::from(probe))));
+        for (cells, weight) in ends.into_iter().chain(others) {
+            for cells in [cells, -cells] {
+                if picks_first(random, weight / total) {
+                    return self.step * cells;
+                }
+                total -= weight;
+            }
+        }
+        DVec2::ZERO
+    }
+
     /// The weighted mean of `colour` over the probes' offsets from the middle.
     ///
     /// Summed in f64 so that a constant comes back to the bit and the largest f32 does not overflow.
@@ -125,7 +158,7 @@ impl Probes {
                 let mut sum = DVec4::ZERO;
                 for probe in 1..=side {
                     let x = f64::from(probe);
-                    let weight = (libm::exp(-x * x * falloff) - EDGE).max(0.0);
+                    let weight = gaussian(x, falloff);
                     total += 2.0 * weight;
                     sum += (pair(x) - middle * 2.0) * weight;
                 }
@@ -133,6 +166,11 @@ impl Probes {
             }
         }
     }
+}
+
+/// The weight of the probe at x, not normalised.
+fn gaussian(x: f64, falloff: f64) -> f64 {
+    (libm::exp(-x * x * falloff) - EDGE).max(0.0)
 }
 
 #[cfg(test)]

@@ -5,6 +5,7 @@ use crate::footprint::{AxisLengths, Footprint};
 use crate::lod::LodRule;
 use crate::probes::{ProbeWeights, Probes};
 use crate::pyramid::Pyramid;
+use crate::stochastic::picks_first;
 
 /// The greatest anisotropy that a lookup follows, whatever its state asks for.
 pub const MAX_ANISOTROPY: f32 = 64.0;
@@ -136,46 +137,82 @@ pub fn sample_with_lod(
     state: &SamplerState,
     footprint: &Footprint,
 ) -> (Vec4, f32) {
-    // `max` turns NaN into 1, which `clamp` would keep.
-    let max_anisotropy = f32::min(state.max_anisotropy.max(1.0), MAX_ANISOTROPY);
-    let one_level = pyramid.levels() == 1 || state.mip == MipFilter::None;
-    if one_level && state.magnify == state.minify && max_anisotropy == 1.0 {
-        return (lookup(pyramid, state, state.magnify, 0, footprint.st), 0.0);
-    }
-
-    // A texel covers the pixel: η = 1 and λ ≤ 0, whatever the axes.
-    if state.keeps_magnification() && footprint.is_within_texel(pyramid.size()) {
-        return (lookup(pyramid, state, state.magnify, 0, footprint.st), 0.0);
-    }
-
-    // Which levels, and how many probes.
-    let axes = AxisLengths::by_rule(
-        pyramid.size(),
-        footprint.dst_dx,
-        footprint.dst_dy,
-        state.lod_rule,
-    );
-    let eta = followed_anisotropy(&axes, max_anisotropy);
-    let lambda = state.limited(libm::log2f(axes.major / eta));
-    let filter = if lambda > 0.0 {
-        state.minify
-    } else {
-        state.magnify
+    let plan = Plan::of(pyramid, state, footprint);
+    let at = |st: DVec2| {
+        plan.levels
+            .blend(|level| lookup(pyramid, state, plan.filter, level, st))
     };
-    let levels = Levels::at(lambda, pyramid.levels(), state.mip);
+    let colour = match plan.probes {
+        None => at(footprint.st),
+        Some(probes) => probes.map_sum(|offset| at(footprint.st + offset)),
+    };
+    (colour.as_vec4(), plan.levels.lod())
+}
 
-    // A level of one texel gives that texel wherever a probe stands.
-    let bordered = state.address.modes.contains(&AddressMode::ClampToBorder);
-    if levels.fraction == 0.0 && !bordered && pyramid.level(levels.fine).size() == UVec2::ONE {
-        return (pyramid.level(levels.fine).fetch(UVec2::ZERO), levels.lod());
+/// What a lookup reads: which levels, with which filter, at which probes.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Plan {
+    pub(crate) levels: Levels,
+    pub(crate) filter: Filter,
+    /// None for one probe in the middle.
+    pub(crate) probes: Option<Probes>,
+}
+
+impl Plan {
+    #[inline]
+    pub(crate) fn of(pyramid: &Pyramid, state: &SamplerState, footprint: &Footprint) -> Self {
+        let magnified = Self {
+            levels: Levels::one(0),
+            filter: state.magnify,
+            probes: None,
+        };
+        // `max` turns NaN into 1, which `clamp` would keep.
+        let max_anisotropy = f32::min(state.max_anisotropy.max(1.0), MAX_ANISOTROPY);
+        let one_level = pyramid.levels() == 1 || state.mip == MipFilter::None;
+        if one_level && state.magnify == state.minify && max_anisotropy == 1.0 {
+            return magnified;
+        }
+
+        // A texel covers the pixel: η = 1 and λ ≤ 0, whatever the axes.
+        if state.keeps_magnification() && footprint.is_within_texel(pyramid.size()) {
+            return magnified;
+        }
+
+        // Which levels, and how many probes.
+        let axes = AxisLengths::by_rule(
+            pyramid.size(),
+            footprint.dst_dx,
+            footprint.dst_dy,
+            state.lod_rule,
+        );
+        let eta = followed_anisotropy(&axes, max_anisotropy);
+        let lambda = state.limited(libm::log2f(axes.major / eta));
+        let filter = if lambda > 0.0 {
+            state.minify
+        } else {
+            state.magnify
+        };
+        let levels = Levels::at(lambda, pyramid.levels(), state.mip);
+
+        // A level of one texel gives that texel wherever a probe stands.
+        let bordered = state.address.modes.contains(&AddressMode::ClampToBorder);
+        let uniform =
+            levels.fraction == 0.0 && !bordered && pyramid.level(levels.fine).size() == UVec2::ONE;
+        if uniform {
+            return Self {
+                levels,
+                filter: Filter::Nearest,
+                probes: None,
+            };
+        }
+        let probes = (eta != 1.0)
+            .then(|| Probes::along(axes.direction().as_dvec2(), eta, state.probe_weights));
+        Self {
+            levels,
+            filter,
+            probes,
+        }
     }
-    let at = |st: DVec2| levels.blend(|level| lookup(pyramid, state, filter, level, st));
-    if eta == 1.0 {
-        return (at(footprint.st).as_vec4(), levels.lod());
-    }
-    let probes = Probes::along(axes.direction().as_dvec2(), eta, state.probe_weights);
-    let sum = probes.map_sum(|offset| at(footprint.st + offset));
-    (sum.as_vec4(), levels.lod())
 }
 
 /// η: the aspect that probes follow.
@@ -198,12 +235,19 @@ fn lookup(pyramid: &Pyramid, state: &SamplerState, filter: Filter, level: u32, s
 
 /// One stored level, or two neighbours and the weight of the coarser.
 #[derive(Debug, Clone, Copy, PartialEq)]
-struct Levels {
+pub(crate) struct Levels {
     fine: u32,
     fraction: f32,
 }
 
 impl Levels {
+    fn one(level: u32) -> Self {
+        Self {
+            fine: level,
+            fraction: 0.0,
+        }
+    }
+
     /// λ may be infinite, not NaN. `count` ≥ 1.
     #[allow(
         clippy::cast_possible_truncation,
@@ -212,18 +256,12 @@ impl Levels {
     fn at(lambda: f32, count: u32, mip: MipFilter) -> Self {
         let lod = lambda.max(0.0).min((count - 1) as f32);
         match mip {
-            MipFilter::None => Self {
-                fine: 0,
-                fraction: 0.0,
-            },
+            MipFilter::None => Self::one(0),
             MipFilter::Nearest => {
                 // ⌈x⌉ − 1 for x = λ + ½ > 0: the floor, less one on the integers.
                 let above = lod + 0.5;
                 let floor = above as u32;
-                Self {
-                    fine: floor - u32::from(floor as f32 == above),
-                    fraction: 0.0,
-                }
+                Self::one(floor - u32::from(floor as f32 == above))
             }
             MipFilter::Linear => {
                 let fine = lod as u32;
@@ -232,6 +270,15 @@ impl Levels {
                     fraction: lod - fine as f32,
                 }
             }
+        }
+    }
+
+    /// One of the levels, by its weight.
+    pub(crate) fn pick(self, random: &mut f64) -> u32 {
+        if self.fraction == 0.0 || !picks_first(random, f64::from(self.fraction)) {
+            self.fine
+        } else {
+            self.fine + 1
         }
     }
 

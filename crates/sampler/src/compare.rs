@@ -1,7 +1,7 @@
 use glam::DVec2;
 
 use crate::address::{Addressing, OUTSIDE};
-use crate::filter::Filter;
+use crate::filter::{AxisWeights, Filter};
 use crate::format::Component;
 use crate::texture::Texture;
 
@@ -87,7 +87,7 @@ pub fn compare(
     };
     let size = depths.size();
     let [s, t] = [(0, st.x, size.x), (1, st.y, size.y)]
-        .map(|(axis, coordinate, n)| weights(address.modes[axis], coordinate, n, filter));
+        .map(|(axis, coordinate, n)| AxisWeights::of(filter, address.modes[axis], coordinate, n));
     let mut sum = 0.0;
     for (j, weight_t) in t.taps() {
         for (i, weight_s) in s.taps() {
@@ -102,41 +102,4 @@ pub fn compare(
         }
     }
     crate::transfer::round_to_f32(sum.clamp(0.0, 1.0))
-}
-
-/// The texels along an axis, and what each weighs.
-struct AxisWeights {
-    texels: [u32; 4],
-    weights: [f64; 4],
-}
-
-impl AxisWeights {
-    /// Those that weigh anything.
-    fn taps(&self) -> impl Iterator<Item = (u32, f64)> {
-        let pairs = self.texels.into_iter().zip(self.weights);
-        pairs.filter(|&(_, weight)| weight != 0.0)
-    }
-}
-
-fn weights(mode: crate::AddressMode, coordinate: f64, size: u32, filter: Filter) -> AxisWeights {
-    match filter {
-        Filter::Nearest => AxisWeights {
-            texels: [mode.nearest_tap(coordinate, size); 4],
-            weights: [1.0, 0.0, 0.0, 0.0],
-        },
-        Filter::Bilinear => {
-            let taps = mode.linear_taps(coordinate, size);
-            AxisWeights {
-                texels: [taps.near, taps.far, taps.far, taps.far],
-                weights: [1.0 - taps.far_weight, taps.far_weight, 0.0, 0.0],
-            }
-        }
-        Filter::Bicubic(kernel) => {
-            let taps = mode.cubic_taps(coordinate, size, kernel);
-            AxisWeights {
-                texels: taps.texels,
-                weights: taps.weights,
-            }
-        }
-    }
 }

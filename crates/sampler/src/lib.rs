@@ -30,7 +30,7 @@
 //! # Between texels: [`Filter`]
 //! [`nearest`] takes the containing texel, [`bilinear`] blends four, [`bicubic`] sixteen; [`sample`] chooses by
 //! value. [`bilinear_fixed`] filters 8-bit texels in integers where [`Precision`] asks for it. [`compare`] filters
-//! comparisons of depths. Filtered colour that belongs to alpha should
+//! comparisons of depths; [`pick`] reads one texel, right on average. Filtered colour that belongs to alpha should
 //! be premultiplied: [`Texture::premultiplied`] before, [`unpremultiply`] after.
 //!
 //! # Conventions
@@ -81,7 +81,7 @@ pub use compare::{Compare, compare};
 pub use error::Error;
 pub use filter::{
     BICUBIC_MAX_ERROR_ULPS, BILINEAR_FIXED_MAX_ERROR, BILINEAR_MAX_ERROR_ULPS, Cubic, Filter,
-    Precision, bicubic, bilinear, bilinear_codes, bilinear_fixed, nearest, sample,
+    Precision, bicubic, bilinear, bilinear_codes, bilinear_fixed, nearest, pick, sample,
 };
 pub use format::{AlphaMode, Component, Format, Texels, Transfer};
 pub use non_finite::NonFinite;

@@ -5,6 +5,8 @@ mod bilinear;
 mod codes;
 mod fixed;
 mod nearest;
+mod pick;
+mod weights;
 
 use glam::{DVec2, Vec4};
 
@@ -13,6 +15,8 @@ pub use bilinear::{BILINEAR_MAX_ERROR_ULPS, bilinear};
 pub use codes::bilinear_codes;
 pub use fixed::{BILINEAR_FIXED_MAX_ERROR, Precision, bilinear_fixed};
 pub use nearest::nearest;
+pub use pick::pick;
+pub(crate) use weights::AxisWeights;
 
 use crate::address::Addressing;
 use crate::texture::Texture;

@@ -13,6 +13,7 @@ mod cube;
 mod fixed;
 mod non_finite;
 mod oracle;
+mod pick;
 mod storage;
 mod strategies;
 mod transfer;
