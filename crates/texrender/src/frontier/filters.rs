@@ -1,17 +1,26 @@
 //! The filters that are measured: one line each.
 
-use glam::Vec4;
+use glam::{UVec2, Vec4};
 use mipmap::{
-    Content, EwaTier, Footprint, LodRule, MipFilter, ProbeWeights, Pyramid, SamplerState, ewa,
-    sample,
+    Content, EwaTier, Footprint, LodRule, MipFilter, ProbeWeights, Pyramid, SamplerState,
+    blue_noise, ewa, sample, stochastic,
 };
 use sampler::{AddressMode, Cubic, Filter, Precision};
 
 use super::kernel::{PixelKernel, Reconstruction, Target};
 use super::texture::TestTexture;
 
-/// Answers a run of footprints, as many colours as footprints.
-pub type Lookup<'a> = Box<dyn Fn(&[Footprint], &mut [Vec4]) + Send + Sync + 'a>;
+/// Some pixels of a frame.
+#[derive(Debug, Clone, Copy)]
+pub struct Run<'a> {
+    /// Where they are: some filters tell random numbers from it.
+    pub pixels: &'a [UVec2],
+    /// Where each looks in the texture; as many.
+    pub footprints: &'a [Footprint],
+}
+
+/// Answers a run of pixels: as many colours.
+pub type Lookup<'a> = Box<dyn Fn(Run<'_>, &mut [Vec4]) + Send + Sync + 'a>;
 
 /// A filter with its setting.
 pub struct FilterSetting<'a> {
@@ -57,6 +66,7 @@ pub fn filter_settings(prepared: &Prepared) -> Vec<FilterSetting<'_>> {
     all.extend(isotropic(pyramid));
     all.extend(probe_lines(pyramid));
     all.extend(elliptic(pyramid));
+    all.extend(stochastic_means(pyramid));
     all
 }
 
@@ -166,6 +176,24 @@ fn elliptic(pyramid: &Pyramid) -> Vec<FilterSetting<'_>> {
     ]
 }
 
+/// The mean of a few texels picked at random, as trilinear and 16 times anisotropic filtering weighs them.
+fn stochastic_means(pyramid: &Pyramid) -> Vec<FilterSetting<'_>> {
+    let state = SamplerState::default();
+    let line = |count: u8| {
+        let lookup: Lookup<'_> = Box::new(move |run, colours| {
+            for ((&pixel, footprint), colour) in run.pixels.iter().zip(run.footprints).zip(colours)
+            {
+                let picked = (0..count.into())
+                    .map(|k| stochastic(pyramid, &state, footprint, blue_noise(pixel, k, 0)));
+                *colour = picked.sum::<Vec4>() / f32::from(count);
+            }
+        });
+        let own = Target::bilinear(PixelKernel::Axes);
+        entry(&format!("stochastic{count}"), "aniso16", own, lookup)
+    };
+    [1, 4, 16].map(line).into()
+}
+
 fn fixed(state: SamplerState) -> SamplerState {
     SamplerState {
         precision: Precision::Fixed,
@@ -209,8 +237,8 @@ fn entry<'a>(filter: &str, setting: &str, own: Target, lookup: Lookup<'a>) -> Fi
 
 /// A lookup of one footprint after the other, `one` inlined into the loop.
 fn each<'a>(one: impl Fn(&Footprint) -> Vec4 + Send + Sync + 'a) -> Lookup<'a> {
-    Box::new(move |footprints, colours| {
-        for (footprint, colour) in footprints.iter().zip(colours) {
+    Box::new(move |run, colours| {
+        for (footprint, colour) in run.footprints.iter().zip(colours) {
             *colour = one(footprint);
         }
     })

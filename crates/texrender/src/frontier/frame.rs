@@ -4,7 +4,7 @@ use glam::{UVec2, Vec4};
 use mipmap::Footprint;
 use rayon::prelude::*;
 
-use super::filters::Lookup;
+use super::filters::{Lookup, Run};
 use super::scene::Scene;
 
 /// What is behind the plane: the peers' clear colour.
@@ -34,18 +34,25 @@ pub(super) fn draw_every(step: u32, scene: &Scene, lookup: &Lookup<'_>, frame: &
 pub(super) fn draw_part(scene: &Scene, lookup: &Lookup<'_>, origin: UVec2, part: &mut [[u8; 4]]) {
     let mut footprints = [Footprint::default(); RUN];
     let mut places = [0usize; RUN];
+    let mut pixels = [UVec2::ZERO; RUN];
     let mut colours = [Vec4::ZERO; RUN];
     part.fill(CLEAR);
     for (run, first) in part.chunks_mut(RUN).zip((origin.x..).step_by(RUN)) {
         let mut covered = 0;
         for (place, x) in (0..run.len()).zip(first..) {
-            if let Some(footprint) = scene.footprint(UVec2::new(x, origin.y)) {
+            let pixel = UVec2::new(x, origin.y);
+            if let Some(footprint) = scene.footprint(pixel) {
+                pixels[covered] = pixel;
                 footprints[covered] = footprint.rounded();
                 places[covered] = place;
                 covered += 1;
             }
         }
-        lookup(&footprints[..covered], &mut colours[..covered]);
+        let seen = Run {
+            pixels: &pixels[..covered],
+            footprints: &footprints[..covered],
+        };
+        lookup(seen, &mut colours[..covered]);
         for (&place, &colour) in places[..covered].iter().zip(&colours) {
             run[place] = encode(colour);
         }
@@ -70,8 +77,8 @@ mod tests {
     #[test]
     fn frames_are_cleared_above_the_horizon() {
         let scene = Scene::named("plane").unwrap();
-        let lookup: Lookup<'_> = Box::new(|footprints, colours| {
-            assert_eq!(footprints.len(), colours.len());
+        let lookup: Lookup<'_> = Box::new(|run, colours| {
+            assert_eq!([run.pixels.len(), run.footprints.len()], [colours.len(); 2]);
             colours.fill(Vec4::new(0.2, 2.0, -1.0, 1.0));
         });
         let mut frame = vec![[1; 4]; 1920 * 1080];

@@ -2,12 +2,12 @@
 
 use std::collections::HashMap;
 
-use glam::Vec4;
+use glam::{UVec2, Vec4};
 use mipmap::Footprint;
 use rayon::prelude::*;
 
 use super::crops::{CropSet, crop_sets};
-use super::filters::{FilterSetting, Prepared, filter_settings};
+use super::filters::{FilterSetting, Prepared, Run, filter_settings};
 use super::kernel::{PixelKernel, Target};
 use super::reference::{Reference, SampleCount, reference};
 use super::scene::Scene;
@@ -120,7 +120,7 @@ pub(super) fn sheet(
     let mut references = HashMap::new();
     let mut errors = Vec::new();
     for filter in &filters {
-        let colours = answers(filter, &footprints);
+        let colours = answers(filter, &pixels, &footprints);
         for (kernel, target) in targets(filter) {
             let reference = references
                 .entry(target)
@@ -190,13 +190,16 @@ fn noise(references: &HashMap<Target, Reference>) -> Vec<(PixelKernel, f64)> {
         .collect()
 }
 
-fn answers(filter: &FilterSetting<'_>, footprints: &[Footprint]) -> Vec<Vec4> {
+fn answers(filter: &FilterSetting<'_>, pixels: &[UVec2], footprints: &[Footprint]) -> Vec<Vec4> {
     const TASK: usize = 4096;
     let mut colours = vec![Vec4::ZERO; footprints.len()];
-    footprints
+    pixels
         .par_chunks(TASK)
+        .zip(footprints.par_chunks(TASK))
         .zip(colours.par_chunks_mut(TASK))
-        .for_each(|(footprints, colours)| (filter.lookup)(footprints, colours));
+        .for_each(|((pixels, footprints), colours)| {
+            (filter.lookup)(Run { pixels, footprints }, colours);
+        });
     colours
 }
 

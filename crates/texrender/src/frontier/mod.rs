@@ -43,7 +43,7 @@ mod timing;
 use glam::UVec2;
 
 pub use crops::{CropSet, FULL_SCALE_ERROR, FilterCrop, Picture};
-pub use filters::{FilterSetting, Lookup, Prepared, filter_settings};
+pub use filters::{FilterSetting, Lookup, Prepared, Run, filter_settings};
 pub use frame::{CLEAR, draw};
 pub use kernel::{GAUSSIAN_CUT, GAUSSIAN_SIGMA, PixelKernel, Reconstruction, Target, ellipse_axes};
 pub use measure::{Crops, Effort, KERNELS, Sheet};

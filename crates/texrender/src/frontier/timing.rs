@@ -5,7 +5,7 @@ use std::time::Instant;
 use glam::{UVec2, Vec4};
 use mipmap::Footprint;
 
-use super::filters::FilterSetting;
+use super::filters::{FilterSetting, Run};
 use super::frame;
 use super::scene::Scene;
 
@@ -56,13 +56,18 @@ fn nanoseconds_per_lookup(
     scene: &Scene,
     effort: &TimingEffort,
 ) -> Vec<f64> {
-    let footprints = rows_of_footprints(scene, effort.lookups);
+    let (pixels, footprints): (Vec<UVec2>, Vec<Footprint>) =
+        rows_of_pixels(scene, effort.lookups).into_iter().unzip();
+    let run = Run {
+        pixels: &pixels,
+        footprints: &footprints,
+    };
     let mut colours = vec![Vec4::ZERO; footprints.len()];
     let mut best = vec![f64::INFINITY; filters.len()];
     for pass in 0..=effort.passes {
         for (filter, best) in filters.iter().zip(&mut best) {
             let start = Instant::now();
-            (filter.lookup)(&footprints, std::hint::black_box(&mut colours));
+            (filter.lookup)(run, std::hint::black_box(&mut colours));
             let seconds = start.elapsed().as_secs_f64();
             if pass > 0 || effort.passes == 0 {
                 *best = best.min(seconds * 1e9 / footprints.len().max(1) as f64);
@@ -107,16 +112,16 @@ fn milliseconds_per_frame(
     times.into_iter().map(median).collect()
 }
 
-/// Footprints of whole rows, `count` or a little more.
-fn rows_of_footprints(scene: &Scene, count: usize) -> Vec<Footprint> {
-    let rows: Vec<Vec<Footprint>> = (0..scene.size.y)
+/// Pixels of whole rows with their footprints, `count` or a little more.
+fn rows_of_pixels(scene: &Scene, count: usize) -> Vec<(UVec2, Footprint)> {
+    let seen = |pixel| Some((pixel, scene.footprint(pixel)?.rounded()));
+    let rows: Vec<Vec<(UVec2, Footprint)>> = (0..scene.size.y)
         .map(|y| {
             (0..scene.size.x)
-                .filter_map(|x| scene.footprint(UVec2::new(x, y)))
-                .map(|footprint| footprint.rounded())
+                .filter_map(|x| seen(UVec2::new(x, y)))
                 .collect()
         })
-        .filter(|row: &Vec<Footprint>| !row.is_empty())
+        .filter(|row: &Vec<_>| !row.is_empty())
         .collect();
     let total: usize = rows.iter().map(Vec::len).sum();
     let stride = (total / count.max(1)).max(1);
@@ -140,10 +145,10 @@ mod tests {
     #[test]
     fn rows_are_spread_over_the_plane() {
         let scene = Scene::named("plane").unwrap();
-        let footprints = rows_of_footprints(&scene, 20_000);
-        assert!((16_000..30_000).contains(&footprints.len()));
+        let pixels = rows_of_pixels(&scene, 20_000);
+        assert!((16_000..30_000).contains(&pixels.len()));
         let longest = |f: &Footprint| f.dst_dy.length() * 1024.0;
-        assert!(footprints.iter().any(|f| longest(f) < 2.0));
-        assert!(footprints.iter().any(|f| longest(f) > 100.0));
+        assert!(pixels.iter().any(|(_, f)| longest(f) < 2.0));
+        assert!(pixels.iter().any(|(_, f)| longest(f) > 100.0));
     }
 }
