@@ -25,7 +25,7 @@ const FARTHEST: f64 = 800.0;
 const RAYS: u32 = 24;
 
 pub(crate) fn bench(criterion: &mut Criterion) {
-    let pyramid = Pyramid::build(checker(), Content::Colour);
+    let pyramid = Pyramid::build(checker(), Content::Colour).expect("colour of any format");
     let pixels: Vec<(Footprint, f64)> = (0..SIZE * SIZE)
         .filter_map(|k| {
             let pixel = DVec2::new(f64::from(k % SIZE), f64::from(k / SIZE));

@@ -1,7 +1,7 @@
 use glam::{DVec3, IVec2, UVec2, Vec2, Vec3};
+use mipmap::solid_angle::cube_face_solid_angles;
 
 use crate::error::Error;
-use crate::solid_angle::cube_face_solid_angles;
 use sampler::cube::{CubeFace, direction_to_cube};
 
 /// Values on the six faces of a cube, read without seams.

@@ -1,7 +1,7 @@
 use glam::{DVec3, UVec2, Vec3};
+use mipmap::solid_angle::cube_face_solid_angles;
 
 use crate::cube_map::CubeMap;
-use crate::solid_angle::cube_face_solid_angles;
 use sampler::cube::direction_to_cube;
 
 /// A cube map and its coarser levels, weighted by solid angle so that every level holds the same energy.

@@ -1,9 +1,9 @@
 use glam::{UVec2, Vec2, Vec3};
+use mipmap::solid_angle::cube_texel_solid_angle;
 
 use crate::cube_map::CubeMap;
 use crate::cube_pyramid::CubePyramid;
 use crate::error::Error;
-use crate::solid_angle::cube_texel_solid_angle;
 use sampler::cube::{CubeFace, cube_to_direction};
 
 /// Finest level of the source that is summed: 6144 texels for each normal.

@@ -1,6 +1,7 @@
 use std::sync::OnceLock;
 
 use glam::{DVec2, UVec2, Vec2, Vec3};
+use mipmap::pyramid::EnvironmentChart;
 use mipmap::{Content, Footprint, Pyramid, SamplerState};
 use sampler::{AddressMode, Component, Texture};
 
@@ -52,12 +53,14 @@ impl LatLong {
     }
 
     /// The same map with the coarser levels that [`LatLong::radiance_filtered`] reads: for a visible background.
+    ///
+    /// Texels are weighted by their solid angle, so that every level holds the energy of the map.
     #[must_use]
     pub fn with_levels(self) -> Self {
-        Self {
-            pyramid: Pyramid::build(self.pyramid.level(0).clone(), Content::Data),
-            ..self
-        }
+        let content = Content::Environment(EnvironmentChart::LatLong);
+        let pyramid = Pyramid::build(self.pyramid.level(0).clone(), content)
+            .expect("a texture of any size can be a latitude-longitude map");
+        Self { pyramid, ..self }
     }
 
     /// Width and height in texels.

@@ -62,7 +62,6 @@ mod error;
 mod irradiance;
 mod latlong;
 mod prefilter;
-mod solid_angle;
 mod specular;
 mod studio;
 
@@ -73,8 +72,8 @@ pub use cube_pyramid::CubePyramid;
 pub use error::Error;
 pub use irradiance::{IrradianceTable, irradiance_face};
 pub use latlong::LatLong;
+pub use mipmap::solid_angle::{cube_texel_solid_angle, latlong_texel_solid_angle};
 pub use prefilter::prefilter_face;
 pub use sampler::cube::{CubeFace, cube_to_direction, direction_to_cube};
-pub use solid_angle::{cube_texel_solid_angle, latlong_texel_solid_angle};
 pub use specular::SpecularTable;
 pub use studio::{studio, studio_radiance};

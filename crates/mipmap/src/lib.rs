@@ -14,12 +14,12 @@
 //!
 //! let texels = Texels::U8(vec![0, 255, 255, 0]);
 //! let checker = Texture::new(UVec2::splat(2), 1, Transfer::Srgb, texels)?;
-//! let pyramid = Pyramid::build(checker, Content::Colour);
+//! let pyramid = Pyramid::build(checker, Content::Colour)?;
 //! let footprint = Footprint { st: DVec2::splat(0.3), dst_dx: Vec2::X, dst_dy: Vec2::Y };
 //! let colour = sample(&pyramid, &SamplerState::default(), &footprint);
 //! // Half the light, as the 8-bit code 188 holds it.
 //! assert!((colour.x - 0.5).abs() < 0.004);
-//! # Ok::<(), sampler::Error>(())
+//! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
 //! # Levels: [`Pyramid`]
@@ -58,19 +58,29 @@
 //! McCormack et al. 1999, "Feline"; Vulkan 1.3, "Image Operations".
 #![forbid(unsafe_code)]
 
-mod downsample;
+mod automatic;
+mod axis_box;
+mod error;
 mod ewa;
 mod footprint;
 mod lod;
 mod probes;
-mod pyramid;
+pub mod pyramid;
+mod rip_map;
+mod runs;
 mod sample;
+pub mod solid_angle;
 mod stochastic;
+mod summed_area;
 
+pub use automatic::{Reading, Tolerance, automatic};
+pub use error::Error;
 pub use ewa::{EwaTier, ewa};
 pub use footprint::{Axes, Footprint, footprint_axes};
 pub use lod::{LOD_MAX_ABS_ERROR, LodRule, lod};
 pub use probes::ProbeWeights;
 pub use pyramid::{Content, Pyramid};
+pub use rip_map::RipMap;
 pub use sample::{MAX_ANISOTROPY, MipFilter, SamplerState, sample, sample_with_lod};
 pub use stochastic::{blue_noise, stochastic};
+pub use summed_area::SummedArea;

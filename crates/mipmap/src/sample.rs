@@ -120,11 +120,11 @@ impl Default for SamplerState {
 /// use mipmap::{Content, Footprint, Pyramid, SamplerState, sample};
 /// use sampler::{Texels, Texture, Transfer};
 /// let halves = Texture::new(UVec2::new(2, 1), 1, Transfer::Linear, Texels::F32(vec![0.0, 1.0]))?;
-/// let pyramid = Pyramid::build(halves, Content::Colour);
+/// let pyramid = Pyramid::build(halves, Content::Colour)?;
 /// // A pixel that sees the texture ten times over sees its mean.
 /// let far = Footprint { st: DVec2::ZERO, dst_dx: Vec2::X * 10.0, dst_dy: Vec2::Y * 10.0 };
 /// assert_eq!(sample(&pyramid, &SamplerState::default(), &far).x, 0.5);
-/// # Ok::<(), sampler::Error>(())
+/// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn sample(pyramid: &Pyramid, state: &SamplerState, footprint: &Footprint) -> Vec4 {
     sample_with_lod(pyramid, state, footprint).0

@@ -26,13 +26,13 @@ use crate::sample::{Plan, SamplerState};
 /// use mipmap::{Content, Footprint, Pyramid, SamplerState, blue_noise, stochastic};
 /// use sampler::{Texels, Texture, Transfer};
 /// let halves = Texture::new(UVec2::new(2, 1), 1, Transfer::Linear, Texels::F32(vec![0.0, 1.0]))?;
-/// let pyramid = Pyramid::build(halves, Content::Colour);
+/// let pyramid = Pyramid::build(halves, Content::Colour)?;
 /// let footprint = Footprint { st: DVec2::splat(0.5), dst_dx: Vec2::X * 0.1, dst_dy: Vec2::Y * 0.1 };
 /// let state = SamplerState::default();
 /// let texels = (0..1000).map(|k| stochastic(&pyramid, &state, &footprint, blue_noise(UVec2::ZERO, k, 0)).x);
 /// let mean = texels.sum::<f32>() / 1000.0;
 /// assert!((mean - 0.5).abs() < 0.01);
-/// # Ok::<(), sampler::Error>(())
+/// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn stochastic(
     pyramid: &Pyramid,

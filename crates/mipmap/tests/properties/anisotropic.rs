@@ -54,7 +54,7 @@ fn anisotropy_keeps_detail_across_the_footprint() {
         sampler::Transfer::Linear,
         sampler::Texels::F32(texels),
     );
-    let pyramid = mipmap::Pyramid::build(texture, mipmap::Content::Colour);
+    let pyramid = mipmap::Pyramid::build(texture, mipmap::Content::Colour).unwrap();
     let footprint = Footprint {
         st: DVec2::new(6.0 / 64.0, 0.5),
         dst_dx: Vec2::X / 64.0,

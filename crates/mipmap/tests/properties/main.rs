@@ -5,9 +5,17 @@
 )]
 
 mod anisotropic;
+mod automatic;
+mod bad_input;
+mod content;
+mod ewa;
 mod filtering;
 mod footprint;
+mod kernels;
 mod lod;
 mod oracle;
 mod pyramid;
+mod rip_map;
+mod stochastic;
 mod strategies;
+mod summed_area;

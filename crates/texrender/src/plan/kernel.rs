@@ -172,10 +172,7 @@ impl<'a> KernelBuilder<'a> {
             AlphaMode::Mask { cutoff } => Coverage::Mask { cutoff },
             AlphaMode::Blend => Coverage::Blend,
         };
-        let color_role = match coverage {
-            Coverage::Opaque => TextureRole::Colour,
-            Coverage::Mask { .. } | Coverage::Blend => TextureRole::ColourWithAlpha,
-        };
+        let color_role = color_role(coverage, self.material.base_color.w);
         let emissive = self.material.emissive;
         // A factor of zero hides its map; alpha still needs the map of a black surface.
         let base_color = self.material.base_color;
@@ -246,7 +243,7 @@ impl<'a> KernelBuilder<'a> {
                     roughness,
                     map: self.map(
                         map.filter(|_| varies),
-                        TextureRole::Data,
+                        TextureRole::MetallicRoughness,
                         "metallic and roughness",
                     ),
                     ior,
@@ -344,6 +341,20 @@ impl<'a> KernelBuilder<'a> {
             texcoord: source.texcoord,
             transform: (!source.transform.is_identity()).then(|| source.transform.affine()),
         })
+    }
+}
+
+/// What base colour means under a coverage. `factor`: what its alpha is multiplied by before the test.
+fn color_role(coverage: Coverage, factor: f32) -> TextureRole {
+    match coverage {
+        Coverage::Opaque => TextureRole::Colour,
+        // A cutoff that no texel reaches keeps no share.
+        Coverage::Mask { cutoff } if (0.0..=1.0).contains(&(cutoff / factor)) => {
+            TextureRole::AlphaTested {
+                cutoff: cutoff / factor,
+            }
+        }
+        Coverage::Mask { .. } | Coverage::Blend => TextureRole::ColourWithAlpha,
     }
 }
 

@@ -26,16 +26,23 @@ pub struct TextureNeed {
 }
 
 /// What the texels of an image mean, which decides how they are decoded and filtered.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum TextureRole {
     /// sRGB colour; alpha, if there is any, is dropped.
     Colour,
     /// sRGB colour with the alpha that covers it.
     ColourWithAlpha,
+    /// sRGB colour that is drawn where its alpha reaches a cutoff: mip levels keep the share that is drawn.
+    AlphaTested {
+        /// The least alpha of a texel that is drawn, in 0..=1, the material's factor taken out.
+        cutoff: f32,
+    },
     /// sRGB colour beside a number in alpha that has nothing to do with it.
     ColourAndData,
     /// Numbers.
     Data,
+    /// Roughness in green, metalness in blue: mip levels average the squared widths of roughness.
+    MetallicRoughness,
     /// Directions.
     Normal,
 }

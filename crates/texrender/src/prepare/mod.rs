@@ -7,6 +7,7 @@ mod tangents;
 use std::collections::BTreeMap;
 
 use glam::Vec4;
+use mipmap::pyramid::{PyramidOptions, Schedule};
 use mipmap::{Content, Pyramid};
 use rayon::prelude::*;
 use sampler::{AlphaMode, Texture, Transfer};
@@ -132,11 +133,12 @@ fn textures(scene: &Scene, plan: &Plan) -> Result<Vec<Pyramid>, Error> {
 
 /// A decoded image as the texture that a need describes.
 fn pyramid(need: &TextureNeed, picture: image::DynamicImage, name: &str) -> Result<Pyramid, Error> {
+    let failed = |detail: String| Error::Image {
+        name: name.to_owned(),
+        detail,
+    };
     let texture = |picture, transfer| {
-        Texture::from_image(picture, transfer).map_err(|error| Error::Image {
-            name: name.to_owned(),
-            detail: error.to_string(),
-        })
+        Texture::from_image(picture, transfer).map_err(|error| failed(error.to_string()))
     };
     let (texture, content) = match need.role {
         TextureRole::Colour => (
@@ -147,19 +149,34 @@ fn pyramid(need: &TextureNeed, picture: image::DynamicImage, name: &str) -> Resu
             texture(picture, Transfer::Srgb)?.premultiplied(),
             Content::Colour,
         ),
+        TextureRole::AlphaTested { cutoff } => (
+            texture(picture, Transfer::Srgb)?.premultiplied(),
+            Content::AlphaTested { cutoff },
+        ),
         // Not alpha at all: marked premultiplied, colour is filtered without regard to it.
         TextureRole::ColourAndData => (
             texture(picture, Transfer::Srgb)?.with_alpha(AlphaMode::Premultiplied),
             Content::Colour,
         ),
         TextureRole::Data => (texture(picture, Transfer::Linear)?, Content::Data),
+        TextureRole::MetallicRoughness => {
+            let texture = texture(picture, Transfer::Linear)?;
+            // Grey stands for green too.
+            let channel = u8::from(texture.channels() >= 3);
+            (texture, Content::Roughness { channel })
+        }
         TextureRole::Normal => (
             texture(decode::without_alpha(picture), Transfer::Linear)?,
             Content::Normal,
         ),
     };
-    Ok(match need.pyramid {
-        PyramidNeed::None => Pyramid::single(texture),
-        PyramidNeed::Full => Pyramid::build(texture, content),
-    })
+    let options = PyramidOptions {
+        schedule: Schedule::CurrentPool,
+        ..PyramidOptions::default()
+    };
+    match need.pyramid {
+        PyramidNeed::None => Ok(Pyramid::single(texture)),
+        PyramidNeed::Full => Pyramid::build_with(texture, content, &options)
+            .map_err(|error| failed(error.to_string())),
+    }
 }

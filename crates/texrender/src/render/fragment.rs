@@ -149,7 +149,9 @@ impl<'a> Fragment<'a> {
         let pyramid = &self.resources.textures[map.texture];
         let (texel, lod) = mipmap::sample_with_lod(pyramid, &map.sampler, &footprint);
         match self.plan.textures[map.texture].role {
-            TextureRole::ColourWithAlpha => (unpremultiply(texel), lod),
+            TextureRole::ColourWithAlpha | TextureRole::AlphaTested { .. } => {
+                (unpremultiply(texel), lod)
+            }
             _ => (texel, lod),
         }
     }

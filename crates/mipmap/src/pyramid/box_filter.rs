@@ -9,15 +9,21 @@
 //!
 //! They sum to 1, and every source texel's weights over all outputs sum to m/(2m+1), so the mean is kept. (A box of
 //! two would drop the last row and column: of 1023 texels, 512 reach the top.)
+//!
+//! On a sphere, the weight of a tap is the solid angle of what it shares with the output texel. Those of one output
+//! texel sum to its own solid angle, those of one source texel to its own: so the energy is kept.
 //! Source: NVIDIA 2005, "Non-Power-of-Two Mipmapping".
 
 use glam::UVec2;
 
+use super::content::EnvironmentChart;
+use super::rows::Schedule;
 use crate::lod::round_to_f32;
+use crate::solid_angle::{SphereColumn, polar_band};
 
 /// Which channels are averaged how.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Averaging {
+pub(super) enum Averaging {
     /// Each channel on its own.
     Independent,
     /// Colour weighted by the alpha in the last channel. Where all alpha is 0, the plain mean.
@@ -26,7 +32,7 @@ pub(crate) enum Averaging {
 
 /// The arithmetic that the source's range asks for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Arithmetic {
+pub(super) enum Arithmetic {
     /// Values in 0..=1: f32 sums.
     UnitRange,
     /// Any f32, its largest included: f64 sums.
@@ -35,10 +41,12 @@ pub(crate) enum Arithmetic {
 
 /// How to average, and what.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Method {
-    pub(crate) channels: usize,
-    pub(crate) averaging: Averaging,
-    pub(crate) arithmetic: Arithmetic,
+pub(super) struct Method {
+    pub(super) channels: usize,
+    pub(super) averaging: Averaging,
+    pub(super) arithmetic: Arithmetic,
+    /// Where texels lie on a sphere; `None` in the plane, where all are as large.
+    pub(super) chart: Option<EnvironmentChart>,
 }
 
 /// The size of the level after one of `size` texels.
@@ -46,31 +54,40 @@ pub(crate) fn halved(size: UVec2) -> UVec2 {
     (size / 2).max(UVec2::ONE)
 }
 
-/// Linear texels of the next level. `read_row(j, buffer)` gives row j of this one.
-pub(crate) fn downsample(
+/// Linear texels of a level of `target` texels, each side of it that of `size` or half as long.
+///
+/// `read_row(j, buffer)` gives row j of this one.
+pub(super) fn reduce(
     size: UVec2,
+    target: UVec2,
     method: Method,
-    read_row: impl Fn(u32, &mut [f32]),
+    schedule: Schedule,
+    read_row: impl Fn(u32, &mut [f32]) + Sync,
 ) -> Vec<f32> {
-    let target = halved(size);
     let row_length = size.x as usize * method.channels;
     let out_length = target.x as usize * method.channels;
-    let even = size.x.is_multiple_of(2) && size.y.is_multiple_of(2);
+    let quads =
+        size == target * 2 && method.chart.is_none() && method.arithmetic == Arithmetic::UnitRange;
 
-    let mut rows = vec![0.0; 3 * row_length];
     let mut out = vec![0.0; out_length * target.y as usize];
-    for (j, out_row) in (0..target.y).zip(out.chunks_exact_mut(out_length)) {
-        let vertical = Taps::of(size.y, j);
-        for (row, k) in rows.chunks_exact_mut(row_length).zip(0..vertical.count) {
-            read_row(vertical.first + k, row);
-        }
-        if even && method.arithmetic == Arithmetic::UnitRange {
-            let (above, below) = rows.split_at(row_length);
-            reduce_even(method, above, &below[..row_length], out_row);
-        } else {
-            reduce_polyphase(method, &rows, size.x, vertical, out_row);
-        }
-    }
+    schedule.for_each_row(
+        &mut out,
+        out_length,
+        || vec![0.0; 3 * row_length],
+        |rows, j, out_row| {
+            let vertical = Taps::of(size.y, target.y, j);
+            for (row, k) in rows.chunks_exact_mut(row_length).zip(0..vertical.count) {
+                read_row(vertical.first + k, row);
+            }
+            if quads {
+                let (above, below) = rows.split_at(row_length);
+                reduce_even(method, above, &below[..row_length], out_row);
+            } else {
+                let windows = windows(method.chart, size, target, vertical);
+                reduce_polyphase(method, rows, windows, out_row);
+            }
+        },
+    );
     out
 }
 
@@ -80,30 +97,98 @@ struct Taps {
     first: u32,
     count: u32,
     weights: [f64; 3],
+    /// Where the taps begin and end, in source texels: `count` + 1 of them.
+    edges: [f64; 4],
 }
 
 impl Taps {
-    /// `size`: texels of the source along the axis. `i`: output texel.
-    fn of(size: u32, i: u32) -> Self {
-        if size == 1 {
+    /// `size`: texels of the source along the axis. `target`: of the output. `i`: output texel.
+    fn of(size: u32, target: u32, i: u32) -> Self {
+        if size == target {
+            let [low, high] = [f64::from(i), f64::from(i + 1)];
             return Self {
-                first: 0,
+                first: i,
                 count: 1,
                 weights: [1.0, 0.0, 0.0],
+                edges: [low, high, high, high],
             };
         }
+        let first = 2 * i;
+        let [one, two, three] = [first, first + 1, first + 2].map(f64::from);
         if size.is_multiple_of(2) {
             return Self {
-                first: 2 * i,
+                first,
                 count: 2,
                 weights: [0.5, 0.5, 0.0],
+                edges: [one, two, three, three],
             };
         }
-        let half = size / 2;
-        let weights = [half - i, half, i + 1].map(|part| f64::from(part) / f64::from(size));
+        let weights = [target - i, target, i + 1].map(|part| f64::from(part) / f64::from(size));
+        let ratio = f64::from(size) / f64::from(target);
         Self {
-            first: 2 * i,
+            first,
             count: 3,
+            weights,
+            edges: [f64::from(i) * ratio, two, three, f64::from(i + 1) * ratio],
+        }
+    }
+
+    /// The same texels, each by the share of the output's band that it covers on a latitude-longitude map.
+    fn by_polar_band(self, size: u32) -> Self {
+        let mut bands = [0.0; 3];
+        for (k, band) in bands.iter_mut().enumerate().take(self.count as usize) {
+            *band = polar_band(size, self.edges[k], self.edges[k + 1]);
+        }
+        let total: f64 = bands.iter().sum();
+        Self {
+            weights: bands.map(|band| band / total),
+            ..self
+        }
+    }
+}
+
+/// The source texels of one output texel, row by row, and their weights, of sum 1.
+#[derive(Debug, Clone, Copy)]
+struct Window {
+    first: u32,
+    columns: u32,
+    rows: u32,
+    weights: [[f64; 3]; 3],
+}
+
+/// The windows of a row of output texels.
+fn windows(
+    chart: Option<EnvironmentChart>,
+    size: UVec2,
+    target: UVec2,
+    vertical: Taps,
+) -> impl FnMut(u32) -> Window {
+    let vertical = match chart {
+        Some(EnvironmentChart::LatLong) => vertical.by_polar_band(size.y),
+        _ => vertical,
+    };
+    // On a cube the weights do not separate. Neighbouring windows share an edge, whose corners are kept.
+    let mut column = SphereColumn::of_face(size, vertical.edges);
+    move |i| {
+        let horizontal = Taps::of(size.x, target.x, i);
+        let mut weights = vertical
+            .weights
+            .map(|wy| horizontal.weights.map(|wx| wx * wy));
+        if chart == Some(EnvironmentChart::CubeFace) {
+            column.advance_to(horizontal.edges[0]);
+            for k in 0..horizontal.count as usize {
+                let angles = column.advance_to(horizontal.edges[k + 1]);
+                for (row, angle) in weights.iter_mut().zip(angles) {
+                    row[k] = angle;
+                }
+            }
+            let total: f64 = weights.iter().flatten().sum();
+            weights = weights.map(|row| row.map(|angle| angle / total));
+        }
+        Window {
+            first: horizontal.first,
+            columns: horizontal.count,
+            rows: vertical.count,
             weights,
         }
     }
@@ -156,24 +241,29 @@ fn weighted_quads<const CHANNELS: usize>(above: &[f32], below: &[f32], out: &mut
 }
 
 /// Any size, any values: up to 3×3 taps, summed in f64. Texels of weight 0 are not read.
-fn reduce_polyphase(method: Method, rows: &[f32], width: u32, vertical: Taps, out: &mut [f32]) {
+fn reduce_polyphase(
+    method: Method,
+    rows: &[f32],
+    mut window_of: impl FnMut(u32) -> Window,
+    out: &mut [f32],
+) {
     let channels = method.channels;
-    let row_length = width as usize * channels;
+    let row_length = rows.len() / 3;
     for (i, texel) in (0u32..).zip(out.chunks_exact_mut(channels)) {
-        let horizontal = Taps::of(width, i);
+        let window = window_of(i);
         let mut sums = [0.0f64; 4];
         let mut plain = [0.0f64; 4];
         let mut total = 0.0;
-        for (row, &wy) in rows
+        for (row, weights) in rows
             .chunks_exact(row_length)
-            .zip(&vertical.weights[..vertical.count as usize])
+            .zip(&window.weights[..window.rows as usize])
         {
-            let first = horizontal.first as usize * channels;
-            for (source, &wx) in row[first..]
+            let first = window.first as usize * channels;
+            for (source, &weight) in row[first..]
                 .chunks_exact(channels)
-                .zip(&horizontal.weights[..horizontal.count as usize])
+                .zip(&weights[..window.columns as usize])
             {
-                accumulate(method, source, wx * wy, &mut sums, &mut plain, &mut total);
+                accumulate(method, source, weight, &mut sums, &mut plain, &mut total);
             }
         }
         finish(method, &sums, &plain, total, texel);

@@ -1,0 +1,264 @@
+use glam::UVec2;
+use sampler::{AlphaMode, Component, Texture};
+
+use super::box_filter::{self, Arithmetic, Averaging, Method, halved};
+use super::content::{Content, EnvironmentChart};
+use super::coverage::Cutoff;
+use super::kernel::Kernel;
+use super::range::Range;
+use super::resample::Wide;
+use super::{NegativeLobes, PyramidOptions};
+use crate::error::Error;
+
+/// The levels of a texture after level 0, each made when it is asked for.
+///
+/// Ends after the level of one texel, or after as many as the options ask for. [`super::Pyramid::build_with`]
+/// collects it; a caller that writes levels to a file, or needs only the first few, need not.
+///
+/// # Examples
+/// ```
+/// use glam::UVec2;
+/// use mipmap::pyramid::{Content, Levels, PyramidOptions};
+/// use sampler::{Texels, Texture, Transfer};
+/// let ramp = Texture::new(UVec2::new(4, 1), 1, Transfer::Linear, Texels::U8(vec![0, 2, 4, 6]))?;
+/// let mut levels = Levels::new(&ramp, Content::Data, &PyramidOptions::default())?;
+/// assert_eq!(levels.next().unwrap().texels(), &Texels::U8(vec![1, 5]));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Debug)]
+pub struct Levels<'a> {
+    texture: &'a Texture,
+    reduction: Reduction,
+    size: UVec2,
+    /// Unrounded texels of the level made last; none before the first.
+    linear: Option<Vec<f32>>,
+    remaining: u32,
+}
+
+impl<'a> Levels<'a> {
+    /// Nothing is reduced yet; level 0 is read once where content or options need its range or coverage.
+    ///
+    /// # Errors
+    /// As [`super::Pyramid::build_with`].
+    pub fn new(
+        texture: &'a Texture,
+        content: Content,
+        options: &PyramidOptions,
+    ) -> Result<Self, Error> {
+        let most = most_levels(texture.size());
+        let asked = options.levels.unwrap_or(most);
+        if asked == 0 {
+            return Err(Error::NoLevels);
+        }
+        if asked > most {
+            return Err(Error::TooManyLevels {
+                asked,
+                most,
+                size: texture.size(),
+            });
+        }
+        Ok(Self {
+            texture,
+            reduction: Reduction::new(texture, content, options)?,
+            size: texture.size(),
+            linear: None,
+            remaining: asked - 1,
+        })
+    }
+}
+
+impl Iterator for Levels<'_> {
+    type Item = Texture;
+
+    fn next(&mut self) -> Option<Texture> {
+        self.remaining = self.remaining.checked_sub(1)?;
+        let target = halved(self.size);
+        let linear = self.linear.as_deref();
+        let next = self
+            .reduction
+            .reduce(self.texture, linear, self.size, target);
+        self.size = target;
+        let level = self.reduction.store(target, &next);
+        self.linear = Some(next);
+        Some(level)
+    }
+
+    fn size_hint(&self) -> (usize, Option<usize>) {
+        let remaining = self.remaining as usize;
+        (remaining, Some(remaining))
+    }
+}
+
+impl ExactSizeIterator for Levels<'_> {}
+
+/// Levels down to 1×1, level 0 included.
+pub(super) fn most_levels(size: UVec2) -> u32 {
+    size.max_element().ilog2() + 1
+}
+
+/// How one texture is reduced: all that follows from its format, its content and the options.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Reduction {
+    texture: sampler::Format,
+    content: Content,
+    options: PyramidOptions,
+    method: Method,
+    /// Known where a wide kernel needs it.
+    range: Option<Range>,
+    /// Of alpha-tested content: where alpha changes sides, and the share of level 0 that is drawn.
+    coverage: Option<(Cutoff, f64)>,
+}
+
+impl Reduction {
+    pub(crate) fn new(
+        texture: &Texture,
+        content: Content,
+        options: &PyramidOptions,
+    ) -> Result<Self, Error> {
+        let format = texture.format();
+        content.check(texture.size(), format)?;
+        let chart = match content {
+            Content::Environment(chart) => Some(chart),
+            _ => None,
+        };
+        if chart.is_some() && options.kernel != Kernel::Box {
+            return Err(Error::EnvironmentKernel {
+                kernel: options.kernel,
+            });
+        }
+        let method = method(format, content, chart);
+        let reduction = Self {
+            texture: format,
+            content,
+            options: *options,
+            method,
+            range: None,
+            coverage: None,
+        };
+        let range = (options.kernel != Kernel::Box).then(|| reduction.range_of(texture));
+        let coverage = match content {
+            Content::AlphaTested { cutoff } if format.alpha_index().is_some() => {
+                Cutoff::stored(cutoff, format.component)
+                    .map(|cutoff| (cutoff, cutoff.share(texture)))
+            }
+            _ => None,
+        };
+        Ok(Self {
+            range,
+            coverage,
+            ..reduction
+        })
+    }
+
+    /// The unrounded texels of a level of `target` texels, each side that of `size` or half as long.
+    ///
+    /// Made from `linear`, the unrounded texels of a level of `size`; `None` is `texture` itself.
+    pub(crate) fn reduce(
+        &self,
+        texture: &Texture,
+        linear: Option<&[f32]>,
+        size: UVec2,
+        target: UVec2,
+    ) -> Vec<f32> {
+        let row_length = size.x as usize * self.method.channels;
+        match linear {
+            None => self.reduce_rows(size, target, |j, row| self.read_row(texture, j, row)),
+            Some(linear) => self.reduce_rows(size, target, |j, row| {
+                row.copy_from_slice(&linear[j as usize * row_length..][..row_length]);
+            }),
+        }
+    }
+
+    /// A level as it is kept: in the format of level 0.
+    pub(crate) fn store(&self, size: UVec2, linear: &[f32]) -> Texture {
+        let channels = self.method.channels;
+        let mut linear = std::borrow::Cow::Borrowed(linear);
+        if let Some(range) = &self.range
+            && self.options.negative_lobes == NegativeLobes::Clamp
+        {
+            for texel in linear.to_mut().chunks_exact_mut(channels) {
+                for (c, value) in texel.iter_mut().enumerate() {
+                    *value = range.hold(c, *value);
+                }
+            }
+        }
+        if let Content::Roughness { channel } = self.content {
+            for texel in linear.to_mut().chunks_exact_mut(channels) {
+                // r = (r⁴)^¼; a negative lobe may have left less than nothing.
+                let value = &mut texel[usize::from(channel)];
+                *value = value.max(0.0).sqrt().sqrt();
+            }
+        }
+        if let Some((cutoff, share)) = self.coverage {
+            let premultiplied = self.texture.alpha == AlphaMode::Premultiplied;
+            cutoff.keep(
+                share,
+                size.x as usize,
+                channels,
+                premultiplied,
+                linear.to_mut(),
+            );
+        }
+        self.options.schedule.store(size, self.texture, &linear)
+    }
+
+    fn reduce_rows(
+        &self,
+        size: UVec2,
+        target: UVec2,
+        read_row: impl Fn(u32, &mut [f32]) + Sync,
+    ) -> Vec<f32> {
+        let schedule = self.options.schedule;
+        match self.range {
+            None => box_filter::reduce(size, target, self.method, schedule, read_row),
+            Some(range) => Wide {
+                kernel: self.options.kernel,
+                address: self.options.address,
+                method: self.method,
+                range,
+            }
+            .reduce(size, target, schedule, read_row),
+        }
+    }
+
+    /// What each channel spans, as it is averaged.
+    fn range_of(&self, texture: &Texture) -> Range {
+        let channels = self.method.channels;
+        let weighted = self.method.averaging == Averaging::AlphaWeighted;
+        Range::of_rows(
+            texture.size(),
+            channels,
+            weighted.then(|| channels - 1),
+            |j, row| self.read_row(texture, j, row),
+        )
+    }
+
+    /// A row of level 0 as it is averaged: linear, and roughness r as r⁴.
+    fn read_row(&self, texture: &Texture, j: u32, row: &mut [f32]) {
+        texture.decode_row(j, row);
+        if let Content::Roughness { channel } = self.content {
+            for texel in row.chunks_exact_mut(self.method.channels) {
+                let value = &mut texel[usize::from(channel)];
+                // NaN.max(0) is 0.
+                let r = value.max(0.0).min(1.0);
+                *value = (r * r) * (r * r);
+            }
+        }
+    }
+}
+
+fn method(format: sampler::Format, content: Content, chart: Option<EnvironmentChart>) -> Method {
+    Method {
+        channels: usize::from(format.channels),
+        averaging: if content.is_weighted_by_alpha(format) {
+            Averaging::AlphaWeighted
+        } else {
+            Averaging::Independent
+        },
+        arithmetic: match format.component {
+            Component::U8 | Component::U16 => Arithmetic::UnitRange,
+            Component::F16 | Component::F32 => Arithmetic::AnyRange,
+        },
+        chart,
+    }
+}

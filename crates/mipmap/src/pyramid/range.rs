@@ -1,0 +1,63 @@
+use glam::UVec2;
+
+/// What each channel of a texture spans: the least and the greatest value.
+///
+/// NaN has no part in it. Of straight colour only visible texels count, if there are any.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Range {
+    least: [f32; 4],
+    greatest: [f32; 4],
+}
+
+impl Range {
+    const NOTHING: Self = Self {
+        least: [f32::INFINITY; 4],
+        greatest: [f32::NEG_INFINITY; 4],
+    };
+
+    /// The range of `size` texels, row by row. `alpha`: the channel that weights the others, if one does.
+    pub(super) fn of_rows(
+        size: UVec2,
+        channels: usize,
+        alpha: Option<usize>,
+        read_row: impl Fn(u32, &mut [f32]),
+    ) -> Self {
+        let mut row = vec![0.0; size.x as usize * channels];
+        let [mut all, mut visible] = [Self::NOTHING; 2];
+        for j in 0..size.y {
+            read_row(j, &mut row);
+            for texel in row.chunks_exact(channels) {
+                all.include(texel);
+                if alpha.is_some_and(|alpha| texel[alpha] > 0.0) {
+                    visible.include(texel);
+                }
+            }
+        }
+        match alpha {
+            Some(alpha) if visible != Self::NOTHING => {
+                visible.least[alpha] = all.least[alpha];
+                visible
+            }
+            _ => all,
+        }
+    }
+
+    /// `value`, no less and no more than the channel's range; NaN stays NaN.
+    pub(super) fn hold(&self, channel: usize, value: f32) -> f32 {
+        if value < self.least[channel] {
+            self.least[channel]
+        } else if value > self.greatest[channel] {
+            self.greatest[channel]
+        } else {
+            value
+        }
+    }
+
+    /// f32's min and max pass over NaN.
+    fn include(&mut self, texel: &[f32]) {
+        for (c, &value) in texel.iter().enumerate() {
+            self.least[c] = self.least[c].min(value);
+            self.greatest[c] = self.greatest[c].max(value);
+        }
+    }
+}
