@@ -42,7 +42,9 @@ fn with_perlins_table_the_2002_noise_is_his() {
         kind: NoiseKind::Perlin2002,
         lattice: Lattice::Permutation(&PERLIN),
     };
-    assert!((noise.value(DVec3::new(157.0 / 50.0, 42.0, 7.0)) - 0.136_919_958_784_000_12).abs() < 1e-15);
+    assert!(
+        (noise.value(DVec3::new(157.0 / 50.0, 42.0, 7.0)) - 0.136_919_958_784_000_12).abs() < 1e-15
+    );
     // Period 256 with a table, none without.
     let far = DVec3::new(157.0 / 50.0 + 256.0, 42.0 - 512.0, 7.0);
     assert!((noise.value(far) - 0.136_919_958_784).abs() < 1e-9);
