@@ -9,6 +9,7 @@ mod assets;
 mod bad_input;
 mod determinism;
 mod filtering;
+mod frontier;
 mod glb;
 mod hard_cases;
 mod lighting;

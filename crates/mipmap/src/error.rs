@@ -26,6 +26,12 @@ pub enum Error {
         /// The size of the texture.
         size: UVec2,
     },
+    /// An error that no lookup can be held to.
+    #[error("tolerance of {tolerance}; give a number above 0")]
+    Tolerance {
+        /// The tolerance asked for.
+        tolerance: f32,
+    },
     /// No level at all was asked for.
     #[error("no levels asked for; level 0 is the least")]
     NoLevels,

@@ -20,8 +20,8 @@
 use std::ops::RangeInclusive;
 use std::sync::OnceLock;
 
-use glam::{DMat2, DVec2, DVec4, Vec4};
-use sampler::{Addressing, Texture};
+use glam::{DMat2, DVec2, DVec4, UVec2, Vec4};
+use sampler::{AddressMode, Addressing, Texture};
 
 use crate::footprint::{AxisLengths, Footprint};
 use crate::lod::round_to_f32;
@@ -96,7 +96,8 @@ const BAND: f32 = 0.25;
 /// footprint as an affine map.
 ///
 /// The cost is bounded: a footprint's minor axis is at least its major axis over [`EwaTier::max_anisotropy`], and
-/// where it is wider than a texel of the last level, or not finite, [`sample`] answers.
+/// where it is wider than a texel of the last level, or not finite, that texel answers ([`sample`], if the level has
+/// more than one texel or a border).
 ///
 /// # Accuracy
 /// As [`EwaTier`] says; checked by `tests/properties/ewa.rs` and `tests/composition/frontier.rs`.
@@ -128,34 +129,28 @@ pub fn ewa(
     let minor = lengths.minor.max(lengths.major / tier.max_anisotropy());
     let lod = libm::log2f(minor) + tier.bias();
     let last = (pyramid.levels() - 1) as f32;
+    let levels = Levels {
+        pyramid,
+        address,
+        tier,
+        footprint,
+    };
     if minor >= 1.0 && lod >= last {
-        let state = SamplerState {
-            address,
-            max_anisotropy: tier.max_anisotropy(),
-            ..SamplerState::default()
-        };
-        return sample(pyramid, &state, footprint);
+        return levels.coarsest();
     }
 
     // A quarter texel about a minor axis of one texel blends the lattice with the levels.
     let magnified = f64::from((1.0 - minor) * 4.0).clamp(0.0, 1.0);
+    let st = levels.nearby_st();
     let from_lattice = |colour: DVec4| {
-        let lattice =
-            Lattice::new(&lengths, minor, tier).mean(pyramid.level(0), &address, footprint.st);
+        let lattice = Lattice::new(&lengths, minor, tier).mean(pyramid.level(0), &address, st);
         colour + (lattice - colour) * magnified
     };
     if magnified == 1.0 {
         return from_lattice(DVec4::ZERO).as_vec4();
     }
     let covariance = lengths.covariance(minor) * (SIGMA * SIGMA);
-    let colour = from_levels(
-        pyramid,
-        &address,
-        tier,
-        lod.clamp(0.0, last),
-        footprint.st,
-        covariance,
-    );
+    let colour = levels.blend(lod.clamp(0.0, last), st, covariance);
     if magnified > 0.0 {
         from_lattice(colour).as_vec4()
     } else {
@@ -163,37 +158,64 @@ pub fn ewa(
     }
 }
 
-/// `lod`: 0 to the last level. `covariance`: of the footprint, in texels of level 0.
-#[allow(
-    clippy::cast_possible_truncation,
-    reason = "0 ≤ lod, and truncation is the floor of it"
-)]
-fn from_levels(
-    pyramid: &Pyramid,
-    address: &Addressing<2>,
+/// The levels of a pyramid under one footprint.
+struct Levels<'a> {
+    pyramid: &'a Pyramid,
+    address: Addressing<2>,
     tier: EwaTier,
-    lod: f32,
-    st: DVec2,
-    covariance: DMat2,
-) -> DVec4 {
-    let at = |level: u32| {
-        let texture = pyramid.level(level);
+    footprint: &'a Footprint,
+}
+
+impl Levels<'_> {
+    /// `lod`: 0 to the last level. `covariance`: of the footprint, in texels of level 0.
+    #[allow(
+        clippy::cast_possible_truncation,
+        reason = "0 ≤ lod, and truncation is the floor of it"
+    )]
+    fn blend(&self, lod: f32, st: DVec2, covariance: DMat2) -> DVec4 {
+        let level = lod as u32;
+        let coarser = (lod - level as f32 - (1.0 - BAND)) / BAND;
+        let colour = self.average(level, st, covariance);
+        if coarser > 0.0 {
+            colour + (self.average(level + 1, st, covariance) - colour) * f64::from(coarser)
+        } else {
+            colour
+        }
+    }
+
+    fn average(&self, level: u32, st: DVec2, covariance: DMat2) -> DVec4 {
+        if level + 1 == self.pyramid.levels() {
+            return self.coarsest().as_dvec4();
+        }
+        let texture = self.pyramid.level(level);
         let size = texture.size().as_dvec2();
-        let scale = size / pyramid.size().as_dvec2();
+        let scale = size / self.pyramid.size().as_dvec2();
         let reduction = DMat2::from_diagonal(scale);
         // 4⁻ᵏ by each axis' own ratio.
         let own = DMat2::from_diagonal((scale * scale + 1.0) / 12.0);
-        let window = tier.window();
+        let window = self.tier.window();
         let w = (reduction * covariance * reduction + own) * window.widening;
-        Ellipse::new(w, window).mean(texture, address, st * size - 0.5)
-    };
-    let level = lod as u32;
-    let coarser = (lod - level as f32 - (1.0 - BAND)) / BAND;
-    let colour = at(level);
-    if coarser > 0.0 {
-        colour + (at(level + 1) - colour) * f64::from(coarser)
-    } else {
-        colour
+        Ellipse::new(w, window).mean(texture, &self.address, st * size - 0.5)
+    }
+
+    /// What stands for the last level, where a footprint may be of any size: its one texel, or else probes.
+    fn coarsest(&self) -> Vec4 {
+        let last = self.pyramid.level(self.pyramid.levels() - 1);
+        if last.size() == UVec2::ONE && !self.address.modes.contains(&AddressMode::ClampToBorder) {
+            return last.fetch(UVec2::ZERO);
+        }
+        let state = SamplerState {
+            address: self.address,
+            max_anisotropy: self.tier.max_anisotropy(),
+            ..SamplerState::default()
+        };
+        sample(self.pyramid, &state, self.footprint)
+    }
+
+    fn nearby_st(&self) -> DVec2 {
+        let [s, t] = self.address.modes;
+        let st = self.footprint.st;
+        DVec2::new(nearby(s, st.x), nearby(t, st.y))
     }
 }
 
@@ -271,8 +293,8 @@ impl<'a> Ellipse<'a> {
         let origin = texture
             .weighted_row(
                 address,
-                nearest(centre.x),
-                nearest(centre.y),
+                floor(centre.x + 0.5),
+                floor(centre.y + 0.5),
                 &[1.0],
                 Vec4::ZERO,
             )
@@ -320,21 +342,32 @@ impl<'a> Ellipse<'a> {
 /// Texels of a row that are weighed at a time.
 const CHUNK: usize = 64;
 
-/// The integers within `reach` of `centre`.
-#[allow(
-    clippy::cast_possible_truncation,
-    reason = "texel indices of a lookup; saturates for coordinates beyond any texture"
-)]
-fn inside(centre: f64, reach: f64) -> RangeInclusive<i64> {
-    (centre - reach).ceil() as i64..=(centre + reach).floor() as i64
+/// A coordinate of the same texels where integers and their neighbours are exact: one period, or so far outside that
+/// nothing changes any more. Odd ones as in [`sampler::bilinear`].
+fn nearby(mode: AddressMode, coordinate: f64) -> f64 {
+    match mode {
+        _ if coordinate.is_nan() => 0.0,
+        AddressMode::Repeat | AddressMode::MirrorRepeat if coordinate.abs() >= 1e15 => 0.0,
+        AddressMode::Repeat => coordinate - floor(coordinate) as f64,
+        AddressMode::MirrorRepeat => coordinate - 2.0 * floor(0.5 * coordinate) as f64,
+        // A footprint that gets here is shorter than 64 textures.
+        _ => coordinate.clamp(-1e3, 1e3),
+    }
 }
 
+/// The integers within `reach` of `centre`.
+fn inside(centre: f64, reach: f64) -> RangeInclusive<i64> {
+    -floor(reach - centre)..=floor(centre + reach)
+}
+
+/// ⌊x⌋ without a call into the platform's library, for |x| < 2⁶².
 #[allow(
     clippy::cast_possible_truncation,
-    reason = "a texel index of a lookup; saturates for coordinates beyond any texture"
+    reason = "truncation is corrected to the floor"
 )]
-fn nearest(centre: f64) -> i64 {
-    centre.round() as i64
+fn floor(x: f64) -> i64 {
+    let truncated = x as i64;
+    truncated - i64::from(truncated as f64 > x)
 }
 
 /// The Gaussian over the bilinear reconstruction, at points along the axes of a footprint: σ apart, and not farther

@@ -71,6 +71,7 @@
 //! Texture Mapping"; Vulkan 1.3, "Image Operations".
 #![forbid(unsafe_code)]
 
+mod automatic;
 mod axis_box;
 mod error;
 mod ewa;
@@ -85,6 +86,7 @@ pub mod solid_angle;
 mod stochastic;
 mod summed_area;
 
+pub use automatic::{Reading, Tolerance, automatic};
 pub use error::Error;
 pub use ewa::{EwaTier, ewa};
 pub use footprint::{Axes, Footprint, footprint_axes};

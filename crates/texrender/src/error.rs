@@ -96,6 +96,18 @@ pub enum Error {
         /// What is wrong and what would be right.
         detail: String,
     },
+    /// A table of comma-separated values is not what it should be.
+    #[error("{}:{line}:{column}: {detail}", path.display())]
+    Csv {
+        /// The file.
+        path: PathBuf,
+        /// Line, from 1.
+        line: usize,
+        /// Field in the line, from 1.
+        column: usize,
+        /// What is wrong and what would be right.
+        detail: String,
+    },
     /// The output cannot be written.
     #[error("cannot write {}: {detail}", path.display())]
     Write {

@@ -72,6 +72,8 @@
 #![forbid(unsafe_code)]
 
 pub mod finish;
+#[cfg(feature = "frontier")]
+pub mod frontier;
 pub mod load;
 pub mod plan;
 pub mod prepare;

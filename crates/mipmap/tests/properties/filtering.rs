@@ -1,7 +1,10 @@
 //! What every filter owes: totality, constants, envelope, continuity. Hard cases B1, B3, B4, B5.
 
 use glam::{DVec2, UVec2, Vec2, Vec4};
-use mipmap::{Content, Footprint, MipFilter, Pyramid, SamplerState, sample, sample_with_lod};
+use mipmap::{
+    Content, EwaTier, Footprint, LodRule, MipFilter, ProbeWeights, Pyramid, SamplerState, ewa,
+    sample, sample_with_lod,
+};
 use proptest::prelude::*;
 use sampler::{AddressMode, Filter, Precision, Texels, Transfer};
 
@@ -71,17 +74,45 @@ fn elliptic(st: DVec2, turn: f64, major: f64, minor: f64, side: f64) -> Footprin
 /// Walks `count` steps and checks that no step moves the colour by more than one code.
 fn assert_continuous(what: &str, count: u32, at: impl Fn(f64) -> Footprint) {
     let pyramid = noise(64);
-    let state = SamplerState::default();
-    let mut last = sample(&pyramid, &state, &at(0.0)).x;
-    for k in 1..=count {
-        let next = sample(&pyramid, &state, &at(f64::from(k))).x;
-        assert!(
-            (next - last).abs() <= MAX_STEP,
-            "{what}: step {k} jumps {}",
-            next - last
-        );
-        last = next;
+    for (filter, lookup) in continuous_filters() {
+        let mut last = lookup(&pyramid, &at(0.0)).x;
+        for k in 1..=count {
+            let next = lookup(&pyramid, &at(f64::from(k))).x;
+            assert!(
+                (next - last).abs() <= MAX_STEP,
+                "{filter}, {what}: step {k} jumps {}",
+                next - last
+            );
+            last = next;
+        }
     }
+}
+
+type Lookup = fn(&Pyramid, &Footprint) -> Vec4;
+
+/// The filters that promise to be continuous.
+fn continuous_filters() -> [(&'static str, Lookup); 6] {
+    const REPEAT: [AddressMode; 2] = [AddressMode::Repeat; 2];
+    [
+        ("probes", |p, f| sample(p, &SamplerState::default(), f)),
+        ("trilinear", |p, f| {
+            let state = SamplerState {
+                max_anisotropy: 1.0,
+                ..SamplerState::default()
+            };
+            sample(p, &state, f)
+        }),
+        ("Gaussian probes", |p, f| {
+            let state = SamplerState {
+                probe_weights: ProbeWeights::Gaussian,
+                ..SamplerState::default()
+            };
+            sample(p, &state, f)
+        }),
+        ("fast ewa", |p, f| ewa(p, REPEAT, EwaTier::Fast, f)),
+        ("standard ewa", |p, f| ewa(p, REPEAT, EwaTier::Standard, f)),
+        ("best ewa", |p, f| ewa(p, REPEAT, EwaTier::Best, f)),
+    ]
 }
 
 #[test]
@@ -230,4 +261,64 @@ fn magnification_uses_its_own_filter() {
     };
     let colour = sample(&pyramid, &state, &round(DVec2::new(0.3, 0.45), 0.5, 8.0)).x;
     assert!(colour == 0.0 || colour == 1.0);
+}
+
+#[test]
+fn bias_shifts_the_level_and_limits_hold_it() {
+    let pyramid = checker(8);
+    let st = DVec2::new(0.3, 0.45);
+    let lod = |lod_bias, lod_range| {
+        let state = SamplerState {
+            max_anisotropy: 1.0,
+            lod_bias,
+            lod_range,
+            ..SamplerState::default()
+        };
+        sample_with_lod(&pyramid, &state, &round(st, 2.0, 8.0)).1
+    };
+    let free = [f32::NEG_INFINITY, f32::INFINITY];
+    assert_eq!(lod(0.0, free), 1.0);
+    assert_eq!(lod(0.5, free), 1.5);
+    assert_eq!(lod(-3.0, free), 0.0);
+    assert_eq!(lod(0.0, [2.0, 3.0]), 2.0);
+    assert_eq!(lod(0.0, [0.0, 0.25]), 0.25);
+    // The least wins; NaN limits nothing and shifts nothing.
+    assert_eq!(lod(0.0, [2.0, 1.0]), 2.0);
+    assert_eq!(lod(f32::NAN, [f32::NAN, f32::NAN]), 1.0);
+    assert_eq!(lod(f32::NEG_INFINITY, free), 0.0);
+}
+
+/// A footprint of less than a texel is minified where the bias says so: negative levels count until it is added.
+#[test]
+fn a_bias_reaches_into_magnification() {
+    let pyramid = checker(8);
+    let state = SamplerState {
+        lod_bias: 2.0,
+        ..SamplerState::default()
+    };
+    let (_, lod) = sample_with_lod(&pyramid, &state, &round(DVec2::splat(0.3), 0.5, 8.0));
+    assert_eq!(lod, 1.0);
+}
+
+/// The usual rule takes the longer vector: half a level sharper on a footprint skewed by 45°.
+#[test]
+fn the_usual_rule_is_sharper_on_skewed_footprints() {
+    let pyramid = noise(64);
+    let step = (4.0f32 / 64.0) * std::f32::consts::FRAC_1_SQRT_2;
+    // Two vectors nearly parallel: the major axis is √2 times either.
+    let footprint = Footprint {
+        st: DVec2::splat(0.4),
+        dst_dx: Vec2::splat(step),
+        dst_dy: Vec2::splat(step),
+    };
+    let lod = |lod_rule| {
+        let state = SamplerState {
+            max_anisotropy: 1.0,
+            lod_rule,
+            ..SamplerState::default()
+        };
+        sample_with_lod(&pyramid, &state, &footprint).1
+    };
+    assert!((lod(LodRule::MaxLength) - 2.0).abs() < 1e-5);
+    assert!((lod(LodRule::Exact) - 2.5).abs() < 1e-5);
 }

@@ -5,8 +5,10 @@
 )]
 
 mod anisotropic;
+mod automatic;
 mod bad_input;
 mod content;
+mod ewa;
 mod filtering;
 mod footprint;
 mod kernels;
@@ -14,5 +16,6 @@ mod lod;
 mod oracle;
 mod pyramid;
 mod rip_map;
+mod stochastic;
 mod strategies;
 mod summed_area;

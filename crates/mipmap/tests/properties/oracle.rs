@@ -147,3 +147,38 @@ fn major_axis(size: UVec2, footprint: &Footprint, major: f64, minor: f64) -> DVe
     }
     image(best) / scale
 }
+
+/// The mean of the bilinear reconstruction of level 0 over a square pixel: 48² midpoints.
+pub(crate) fn square(pyramid: &Pyramid, footprint: &Footprint) -> f64 {
+    let n = 48;
+    let points = (0..n).map(|k| (f64::from(k) + 0.5) / f64::from(n) - 0.5);
+    weighted(
+        pyramid,
+        footprint,
+        &points.map(|x| (x, 1.0)).collect::<Vec<_>>(),
+    )
+}
+
+/// The mean over a Gaussian pixel of σ = ½, to 5σ: 60² points.
+pub(crate) fn gaussian(pyramid: &Pyramid, footprint: &Footprint) -> f64 {
+    let points = (0..60).map(|k| (f64::from(k) + 0.5) / 12.0 - 2.5);
+    weighted(
+        pyramid,
+        footprint,
+        &points
+            .map(|x| (x, (-2.0 * x * x).exp()))
+            .collect::<Vec<_>>(),
+    )
+}
+
+fn weighted(pyramid: &Pyramid, footprint: &Footprint, points: &[(f64, f64)]) -> f64 {
+    let [dx, dy] = [footprint.dst_dx, footprint.dst_dy].map(Vec2::as_dvec2);
+    let (mut sum, mut total) = (0.0, 0.0);
+    for (y, wy) in points {
+        for (x, wx) in points {
+            sum += bilinear(pyramid.level(0), footprint.st + dx * x + dy * y).x * wx * wy;
+            total += wx * wy;
+        }
+    }
+    sum / total
+}

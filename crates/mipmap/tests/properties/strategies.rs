@@ -228,3 +228,33 @@ pub(crate) fn noise(side: u32) -> Pyramid {
     )
     .unwrap()
 }
+
+/// A checkerboard of full contrast, 8-bit and linear, with cells of `cell` texels.
+pub(crate) fn checkered(side: u32, cell: u32) -> Pyramid {
+    let white = |k: u32| !((k % side) / cell + (k / side) / cell).is_multiple_of(2);
+    let texels = (0..side * side)
+        .map(|k| if white(k) { 255 } else { 0 })
+        .collect();
+    let texture = made(UVec2::splat(side), 1, Transfer::Linear, Texels::U8(texels));
+    Pyramid::build(texture, Content::Data).unwrap()
+}
+
+/// Footprint `k` of a fixed sequence: minor axis in texels and aspect log-uniform in their ranges, any turn.
+pub(crate) fn random_footprint(k: u32, side: f64, minor: [f64; 2], aspect: [f64; 2]) -> Footprint {
+    let mut state = u64::from(k).wrapping_mul(0x9e37_79b9_7f4a_7c15) ^ 0x2545_f491_4f6c_dd1d;
+    let mut random = || {
+        state ^= state << 13;
+        state ^= state >> 7;
+        state ^= state << 17;
+        (state >> 11) as f64 / (1u64 << 53) as f64
+    };
+    random();
+    let minor = minor[0] * (minor[1] / minor[0]).powf(random()) / side;
+    let major = minor * aspect[0] * (aspect[1] / aspect[0]).powf(random());
+    let [dx, dy] = turned(random() * 7.0, random() * 7.0, major, minor);
+    Footprint {
+        st: DVec2::new(random(), random()),
+        dst_dx: dx.as_vec2(),
+        dst_dy: dy.as_vec2(),
+    }
+}

@@ -14,6 +14,8 @@ mod fixed;
 mod non_finite;
 mod oracle;
 mod pick;
+mod solid_noise;
+mod solid_regular;
 mod storage;
 mod strategies;
 mod tile;

@@ -37,7 +37,7 @@ fn folder(path: &Path) -> &Path {
 }
 
 /// Writes `bytes` beside `path`, then puts them in its place in one step.
-pub(super) fn replace(path: &Path, bytes: &[u8]) -> Result<(), Error> {
+pub(crate) fn replace(path: &Path, bytes: &[u8]) -> Result<(), Error> {
     check_folder(path)?;
     write(path, bytes).map_err(|error| Error::Write {
         path: path.to_owned(),

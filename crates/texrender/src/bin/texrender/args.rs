@@ -31,6 +31,8 @@ pub(crate) enum Command {
     Inspect(Box<InspectArgs>),
     /// Measure a texture's seam, make it repeat without one, or make more of it that does not repeat.
     Tile(TileArgs),
+    /// Measure every texture filter: its speed against its error, as data, plots and one HTML page.
+    Frontier(FrontierArgs),
 }
 
 #[derive(Args)]
@@ -89,6 +91,31 @@ pub(crate) struct TileArgs {
     /// Another seed makes another texture.
     #[arg(long, value_name = "N", default_value_t = 0, requires = "expand")]
     pub seed: u64,
+}
+
+#[derive(Args)]
+pub(crate) struct FrontierArgs {
+    /// Folder to write frontier.csv, plots, crops and index.html to; made if it is not there.
+    #[arg(short, long, value_name = "DIR")]
+    pub output: PathBuf,
+    /// A minute or two instead of several: all scenes but fill_min4, at most two computed textures each, a ninth of
+    /// the pixels, a quarter of the samples, fewer frames.
+    #[arg(long)]
+    pub quick: bool,
+    /// Scene to measure: plane, grazing, floor, floor_rotated, fill_mag, fill_min4, fill_min3, or all.
+    #[arg(long, value_name = "all|NAME", default_value = "all")]
+    pub scene: String,
+    /// A texture beside the computed ones: a picture, or NAME.rgba with 1024x1024 texels of 4 bytes. Its codes are
+    /// taken as linear.
+    #[arg(long, value_name = "FILE")]
+    pub texture: Option<PathBuf>,
+    /// What other renderers were measured at, to be laid beside: CSV with the columns peer, scene, filter, texture,
+    /// threads, ms_median and rmse.
+    #[arg(long, value_name = "FILE")]
+    pub peers: Option<PathBuf>,
+    /// Threads that frames are drawn on; all cores if left out.
+    #[arg(long, value_name = "N", value_parser = values::threads)]
+    pub threads: Option<usize>,
 }
 
 /// What decides which picture it is.

@@ -1,6 +1,7 @@
 //! The program: textured pictures of 3D scenes on a machine without a GPU.
 
 mod args;
+mod frontier;
 mod inspect;
 mod progress;
 mod render;
@@ -20,6 +21,7 @@ fn main() -> ExitCode {
         Command::Render(args) => render::run(&args),
         Command::Inspect(args) => inspect::run(&args),
         Command::Tile(args) => tile::run(&args),
+        Command::Frontier(args) => frontier::run(&args),
     };
     match done {
         Ok(()) => ExitCode::SUCCESS,

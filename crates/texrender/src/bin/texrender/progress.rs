@@ -1,5 +1,7 @@
 //! A progress bar on a terminal, nothing in a pipe.
 
+use std::borrow::Cow;
+
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
 /// Steps of the bar.
@@ -23,7 +25,7 @@ impl Progress {
         Self { bar }
     }
 
-    pub(crate) fn stage(&self, name: &'static str) {
+    pub(crate) fn stage(&self, name: impl Into<Cow<'static, str>>) {
         self.bar.set_message(name);
         self.bar.tick();
     }

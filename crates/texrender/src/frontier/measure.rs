@@ -1,0 +1,247 @@
+//! One scene with one texture: every filter's error and time.
+
+use std::collections::HashMap;
+
+use glam::{UVec2, Vec4};
+use mipmap::Footprint;
+use rayon::prelude::*;
+
+use super::crops::{CropSet, crop_sets};
+use super::filters::{FilterSetting, Prepared, Run, filter_settings};
+use super::kernel::{PixelKernel, Target};
+use super::reference::{Reference, SampleCount, reference};
+use super::scene::Scene;
+use super::table::{Errors, Row};
+use super::texture::TestTexture;
+use super::timing::{Times, TimingEffort};
+
+/// How much work a measurement is.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Effort {
+    /// Of the pixels that a scene takes errors at, every so many-th each way; at least 1.
+    pub thinning: u32,
+    /// Samples of the references that errors are taken against.
+    pub samples: SampleCount,
+    /// Computed textures of a scene, at most.
+    pub textures: usize,
+    /// Times.
+    pub timing: TimingEffort,
+    /// Crops.
+    pub crops: Crops,
+}
+
+/// Whether crops are made.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Crops {
+    /// All of a scene's, their references with so many samples.
+    Made(SampleCount),
+    /// None.
+    LeftOut,
+}
+
+impl Effort {
+    /// For a result in a minute or two: a ninth of the pixels, at most two textures a scene, fewer frames.
+    pub const QUICK: Self = Self {
+        thinning: 3,
+        samples: SampleCount {
+            strata: [16, 32, 64],
+        },
+        textures: 2,
+        timing: TimingEffort {
+            lookups: 16_000,
+            passes: 5,
+            frames: 5,
+            frame_seconds: 0.1,
+            longest_frame_seconds: 0.25,
+        },
+        crops: Crops::Made(SampleCount {
+            strata: [8, 16, 32],
+        }),
+    };
+
+    /// For figures to quote: all pixels, four times the samples.
+    pub const FULL: Self = Self {
+        thinning: 1,
+        samples: SampleCount {
+            strata: [32, 64, 128],
+        },
+        textures: usize::MAX,
+        timing: TimingEffort {
+            lookups: 48_000,
+            passes: 11,
+            frames: 15,
+            frame_seconds: 1.5,
+            longest_frame_seconds: 3.0,
+        },
+        crops: Crops::Made(SampleCount {
+            strata: [16, 32, 64],
+        }),
+    };
+}
+
+/// All about one scene with one texture.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Sheet {
+    /// The scene.
+    pub scene: Scene,
+    /// Name of the texture.
+    pub texture: String,
+    /// Pixels that errors were taken at.
+    pub pixels: usize,
+    /// Each filter's own kernel, in the order of the rows.
+    pub own: Vec<PixelKernel>,
+    /// Upper bounds of the noise of references, RMS.
+    pub noise: Vec<(PixelKernel, f64)>,
+    /// Filter by filter, three kernels each.
+    pub rows: Vec<Row>,
+    /// Parts of the frame.
+    pub crops: Vec<CropSet>,
+}
+
+/// Measures every filter on `scene` with `texture`, on the current pool.
+///
+/// `known`: times of the same filters on the same scene with another texture of the same size.
+pub(super) fn sheet(
+    scene: &Scene,
+    texture: &TestTexture,
+    effort: &Effort,
+    known: Option<Times>,
+) -> (Sheet, Times) {
+    let prepared = Prepared::new(texture);
+    let filters = filter_settings(&prepared);
+    let pixels = scene.error_pixels(effort.thinning);
+    let footprints: Vec<Footprint> = pixels
+        .iter()
+        .filter_map(|&pixel| scene.footprint(pixel))
+        .map(|footprint| footprint.rounded())
+        .collect();
+
+    // Errors, each reference made once.
+    let mut references = HashMap::new();
+    let mut errors = Vec::new();
+    for filter in &filters {
+        let colours = answers(filter, &pixels, &footprints);
+        for (kernel, target) in targets(filter) {
+            let reference = references
+                .entry(target)
+                .or_insert_with(|| reference(scene, texture, &pixels, target, effort.samples));
+            errors.push((kernel, errors_of(&colours, reference)));
+        }
+    }
+
+    let times = known.unwrap_or_else(|| Times::measure(&filters, scene, &effort.timing));
+    let row = |index: usize, (kernel, errors): &(&'static str, Errors)| Row {
+        filter: filters[index].filter.clone(),
+        setting: filters[index].setting.clone(),
+        scene: scene.name.to_owned(),
+        texture: texture.name.clone(),
+        kernel: (*kernel).to_owned(),
+        ns_per_lookup: times.nanoseconds_per_lookup[index],
+        ms_per_frame: times.milliseconds_per_frame[index],
+        errors: *errors,
+    };
+    let sheet = Sheet {
+        scene: scene.clone(),
+        texture: texture.name.clone(),
+        pixels: pixels.len(),
+        own: filters.iter().map(|filter| filter.own.kernel).collect(),
+        noise: noise(&references),
+        rows: errors
+            .iter()
+            .enumerate()
+            .map(|(k, errors)| row(k / KERNELS.len(), errors))
+            .collect(),
+        crops: match effort.crops {
+            Crops::Made(samples) => crop_sets(scene, texture, &filters, samples),
+            Crops::LeftOut => Vec::new(),
+        },
+    };
+    (sheet, times)
+}
+
+/// Kernels as the table names them.
+pub const KERNELS: [&str; 3] = ["box", "gaussian", "own"];
+
+fn targets(filter: &FilterSetting<'_>) -> [(&'static str, Target); 3] {
+    let [boxed, gaussian] = [PixelKernel::Box, PixelKernel::Gaussian].map(Target::bilinear);
+    [
+        (KERNELS[0], boxed),
+        (KERNELS[1], gaussian),
+        (KERNELS[2], filter.own),
+    ]
+}
+
+/// The noise of sampled references, in a settled order.
+fn noise(references: &HashMap<Target, Reference>) -> Vec<(PixelKernel, f64)> {
+    let sampled = [
+        PixelKernel::Box,
+        PixelKernel::Gaussian,
+        PixelKernel::Ellipse,
+        PixelKernel::Square,
+        PixelKernel::Axes,
+        PixelKernel::Bounds,
+    ];
+    sampled
+        .into_iter()
+        .filter_map(|kernel| {
+            let reference = references.get(&Target::bilinear(kernel))?;
+            Some((kernel, reference.noise))
+        })
+        .collect()
+}
+
+fn answers(filter: &FilterSetting<'_>, pixels: &[UVec2], footprints: &[Footprint]) -> Vec<Vec4> {
+    const TASK: usize = 4096;
+    let mut colours = vec![Vec4::ZERO; footprints.len()];
+    pixels
+        .par_chunks(TASK)
+        .zip(footprints.par_chunks(TASK))
+        .zip(colours.par_chunks_mut(TASK))
+        .for_each(|((pixels, footprints), colours)| {
+            (filter.lookup)(Run { pixels, footprints }, colours);
+        });
+    colours
+}
+
+fn errors_of(colours: &[Vec4], reference: &Reference) -> Errors {
+    let (mut squares, mut max, mut sum) = (0.0, 0f64, 0.0);
+    for (colour, expected) in colours
+        .iter()
+        .zip(reference.values.chunks(reference.channels))
+    {
+        for (found, expected) in colour.to_array().iter().zip(expected) {
+            let error = f64::from(*found) - expected;
+            squares += error * error;
+            max = max.max(error.abs());
+            sum += error;
+        }
+    }
+    let count = reference.values.len().max(1) as f64;
+    Errors {
+        rmse: (squares / count).sqrt(),
+        max,
+        mean: sum / count,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn errors_are_those_of_a_hand_made_pair() {
+        let colours = [
+            Vec4::new(0.5, 9.0, 9.0, 1.0),
+            Vec4::new(0.25, 9.0, 9.0, 1.0),
+        ];
+        let reference = Reference {
+            channels: 1,
+            values: vec![0.2, 0.65],
+            noise: 0.0,
+        };
+        let errors = errors_of(&colours, &reference);
+        assert!((errors.rmse - 0.125f64.sqrt()).abs() < 1e-12);
+        assert!((errors.max - 0.4).abs() < 1e-12);
+        assert!((errors.mean + 0.05).abs() < 1e-12);
+    }
+}
