@@ -32,7 +32,7 @@ fn frontier(scene: &str, effort: Effort) -> Frontier {
         effort,
         peers: Vec::new(),
     };
-    measure(&options, &|_, _| {})
+    measure(&options, &|_, _| {}).unwrap()
 }
 
 /// RMSE of a filter with a setting against a kernel.
@@ -259,7 +259,7 @@ fn an_added_texture_is_measured_under_its_name() {
         },
         peers: Vec::new(),
     };
-    let frontier = measure(&options, &|_, _| {});
+    let frontier = measure(&options, &|_, _| {}).unwrap();
     // `grazing` is for its own texture only.
     let names: Vec<&str> = frontier.sheets.iter().map(|s| s.texture.as_str()).collect();
     assert_eq!(names, ["two__three"]);

@@ -14,6 +14,7 @@ use super::scene::Scene;
 use super::table::{Errors, Row};
 use super::texture::TestTexture;
 use super::timing::{Times, TimingEffort};
+use crate::error::Error;
 
 /// How much work a measurement is.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -33,7 +34,7 @@ pub struct Effort {
 /// Whether crops are made.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Crops {
-    /// All of a scene's, their references with so many samples.
+    /// All of a scene's, with its first texture and that of the caller, their references with so many samples.
     Made(SampleCount),
     /// None.
     LeftOut,
@@ -48,11 +49,11 @@ impl Effort {
         },
         textures: 2,
         timing: TimingEffort {
-            lookups: 16_000,
-            passes: 5,
+            lookups: 8_000,
+            passes: 4,
             frames: 5,
-            frame_seconds: 0.1,
-            longest_frame_seconds: 0.25,
+            frame_seconds: 0.04,
+            longest_frame_seconds: 0.12,
         },
         crops: Crops::Made(SampleCount {
             strata: [8, 16, 32],
@@ -70,8 +71,8 @@ impl Effort {
             lookups: 48_000,
             passes: 11,
             frames: 15,
-            frame_seconds: 1.5,
-            longest_frame_seconds: 3.0,
+            frame_seconds: 0.8,
+            longest_frame_seconds: 1.0,
         },
         crops: Crops::Made(SampleCount {
             strata: [16, 32, 64],
@@ -101,13 +102,16 @@ pub struct Sheet {
 /// Measures every filter on `scene` with `texture`, on the current pool.
 ///
 /// `known`: times of the same filters on the same scene with another texture of the same size.
+///
+/// # Errors
+/// As [`Prepared::new`].
 pub(super) fn sheet(
     scene: &Scene,
     texture: &TestTexture,
     effort: &Effort,
     known: Option<Times>,
-) -> (Sheet, Times) {
-    let prepared = Prepared::new(texture);
+) -> Result<(Sheet, Times), Error> {
+    let prepared = Prepared::new(texture)?;
     let filters = filter_settings(&prepared);
     let pixels = scene.error_pixels(effort.thinning);
     let footprints: Vec<Footprint> = pixels
@@ -156,7 +160,7 @@ pub(super) fn sheet(
             Crops::LeftOut => Vec::new(),
         },
     };
-    (sheet, times)
+    Ok((sheet, times))
 }
 
 /// Kernels as the table names them.
@@ -176,6 +180,7 @@ fn noise(references: &HashMap<Target, Reference>) -> Vec<(PixelKernel, f64)> {
     let sampled = [
         PixelKernel::Box,
         PixelKernel::Gaussian,
+        PixelKernel::Parallelogram,
         PixelKernel::Ellipse,
         PixelKernel::Square,
         PixelKernel::Axes,

@@ -125,8 +125,8 @@ fn kernels() -> String {
          <dt>own</dt><dd>What the filter says it approximates. <b>Point</b>: the texture between its texels at the \
          pixel’s centre. <b>Square</b>: a square along the texture’s axes, as wide as the footprint is long. <b>Axes</b>: \
          the rectangle that the footprint ellipse’s two axes span. <b>Bounds</b>: the upright rectangle with sides \
-         hypot(∂s/∂x, ∂s/∂y) and hypot(∂t/∂x, ∂t/∂y). <b>Ellipse</b>: the Gaussian \
-         pixel, the texture taken as flat around it. This error says how well a filter is \
+         hypot(∂s/∂x, ∂s/∂y) and hypot(∂t/∂x, ∂t/∂y). <b>Parallelogram</b> and <b>ellipse</b>: \
+         the square and the Gaussian pixel, the plane taken as parallel to the screen around it. This error says how well a filter is \
          made, not how good it looks.</dd>\n</dl>\n"
     )
 }

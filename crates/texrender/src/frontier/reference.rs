@@ -118,7 +118,10 @@ fn pixel_mean<const C: usize>(
             let st = footprint.st + footprint.dst_dx * offset.x + footprint.dst_dy * offset.y;
             Some(read(st))
         }),
-        PixelKernel::Square | PixelKernel::Axes | PixelKernel::Bounds => {
+        PixelKernel::Parallelogram
+        | PixelKernel::Square
+        | PixelKernel::Axes
+        | PixelKernel::Bounds => {
             let [a, b] = rectangle(target.kernel, &footprint, codes.size);
             strata.mean(|at| Some(read(footprint.st + a * (at.x - 0.5) + b * (at.y - 0.5))))
         }
@@ -130,6 +133,7 @@ fn rectangle(kernel: PixelKernel, footprint: &ExactFootprint, size: UVec2) -> [D
     let axes = ellipse_axes(footprint, size);
     let scale = size.as_dvec2();
     match kernel {
+        PixelKernel::Parallelogram => [footprint.dst_dx, footprint.dst_dy],
         PixelKernel::Square => {
             let side = DVec2::splat((axes[0] * scale).length()) / scale;
             [DVec2::X * side.x, DVec2::Y * side.y]
@@ -379,6 +383,7 @@ mod tests {
             weights.iter().zip(codes).map(|(w, c)| w * c).sum::<f64>() / 4.0 / 255.0;
         for kernel in [
             PixelKernel::Box,
+            PixelKernel::Parallelogram,
             PixelKernel::Square,
             PixelKernel::Axes,
             PixelKernel::Bounds,
