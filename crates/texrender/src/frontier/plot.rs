@@ -216,7 +216,8 @@ impl Plot {
         for (k, point) in self.points.iter().enumerate() {
             draw_marker(&area, places[k], point.family, front.contains(&k))?;
         }
-        self.draw_labels(&area, &places, [x.start, y.start, x.end, y.end])?;
+        let line: Vec<(i32, i32)> = front.iter().map(|&k| places[k]).collect();
+        self.draw_labels(&area, &places, &line, [x.start, y.start, x.end, y.end])?;
         area.present()?;
         Ok(())
     }
@@ -246,9 +247,15 @@ impl Plot {
         }
     }
 
-    fn draw_labels(&self, area: &Area<'_>, points: &[(i32, i32)], within: Rectangle) -> Drawn<()> {
+    fn draw_labels(
+        &self,
+        area: &Area<'_>,
+        points: &[(i32, i32)],
+        line: &[(i32, i32)],
+        within: Rectangle,
+    ) -> Drawn<()> {
         let texts: Vec<String> = self.points.iter().map(|p| p.label.clone()).collect();
-        let places = labels::place(points, &texts, within);
+        let places = labels::place(points, &texts, line, within);
         for (k, place) in places.into_iter().enumerate() {
             let Some([left, top, right, bottom]) = place else {
                 continue;
