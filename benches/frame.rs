@@ -1,4 +1,4 @@
-//! The speed of a frame and of its stages, and of each texture filter beside its error.
+//! The speed of a frame and of its stages, and of each texture filter and level kernel beside its error.
 //!
 //! `cargo bench -p texrender-rs`, with `TEXRENDER_ASSETS` naming the folder of shared models for
 //! more than the showcase; `cargo bench -p texrender-rs -- mipmap` for the filters alone.
@@ -8,9 +8,10 @@
 )]
 
 mod filters;
+mod pyramid;
 mod stages;
 
 use criterion::{criterion_group, criterion_main};
 
-criterion_group!(benches, stages::bench, filters::bench);
+criterion_group!(benches, stages::bench, filters::bench, pyramid::bench);
 criterion_main!(benches);

@@ -1,7 +1,7 @@
 //! Only what the scene needs is decoded, built or evaluated.
 
 use serde_json::json;
-use texrender::{EnvironmentSource, FilterChoice, Settings};
+use texrender::{EnvironmentSource, FilterChoice, Settings, TextureRole};
 
 use crate::glb::{Glb, film, square};
 
@@ -120,6 +120,41 @@ fn an_image_in_two_roles_is_decoded_once() {
     let (_, plan, resources) = film(&glb.load(), &square(16));
     assert_eq!(resources.counts.images_decoded, 3);
     assert_eq!(plan.textures.len(), 4);
+}
+
+#[test]
+fn occlusion_packed_with_roughness_is_prepared_once() {
+    let mut glb = lit();
+    glb.json["materials"][0]["occlusionTexture"] = json!({ "index": 1 });
+    let (_, plan, _) = film(&glb.load(), &square(16));
+    let roles: Vec<TextureRole> = plan.textures.iter().map(|need| need.role).collect();
+    assert_eq!(
+        roles,
+        [
+            TextureRole::Colour,
+            TextureRole::MetallicRoughness,
+            TextureRole::Normal
+        ]
+    );
+    assert_eq!(plan.textures[1].reasons.len(), 2);
+}
+
+#[test]
+fn masked_levels_keep_the_share_that_the_factor_leaves() {
+    let mut glb = lit();
+    let material = &mut glb.json["materials"][0];
+    material["alphaMode"] = json!("MASK");
+    material["alphaCutoff"] = json!(0.25);
+    material["pbrMetallicRoughness"]["baseColorFactor"] = json!([1.0, 1.0, 1.0, 0.5]);
+    let (_, plan, _) = film(&glb.load(), &square(16));
+    assert_eq!(
+        plan.textures[0].role,
+        TextureRole::AlphaTested { cutoff: 0.5 }
+    );
+    // A factor below the cutoff hides every texel: there is no share to keep.
+    glb.json["materials"][0]["alphaCutoff"] = json!(0.75);
+    let (_, plan, _) = film(&glb.load(), &square(16));
+    assert_eq!(plan.textures[0].role, TextureRole::ColourWithAlpha);
 }
 
 #[test]

@@ -2,7 +2,7 @@
 //!
 //! ```text
 //!   pixel ──► footprint: st, ∂st/∂x, ∂st/∂y          ┌ level 0 ┐
-//!                  │ axes (singular values)           │ level 1 │   Pyramid: box-filtered in linear light
+//!                  │ axes (singular values)           │ level 1 │   Pyramid: reduced in linear light
 //!                  ▼                                  │   ...   │
 //!            η probes along the major axis, at λ ───► └ level n ┘ ──► colour
 //! ```
@@ -22,9 +22,12 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! # Levels: [`Pyramid`]
+//! # Levels: [`Pyramid`], [`pyramid`]
 //! Each level halves the one before; an odd side is split among three taps, so that every level keeps the mean.
-//! [`Content`] says what texels mean: colour is weighted by alpha, normals keep their shortened length.
+//! [`Content`] says what texels mean, and a level keeps that: colour is weighted by alpha, alpha-tested colour covers
+//! as much as before, normals keep their shortened length, roughness r adds up as r⁴, heights know their bounds,
+//! environments their energy. [`pyramid::Kernel`] offers sharper filters than the box, [`pyramid::Levels`] one level
+//! at a time, [`pyramid::Schedule`] the caller's thread pool (feature `rayon`).
 //!
 //! # Level of detail: [`footprint_axes`], [`lod`]
 //! The footprint of a round pixel is an ellipse. Its axes are the singular values of the derivatives in texels;
@@ -34,6 +37,10 @@
 //! glTF's six minification filters and two magnification filters, trilinear, and a line of probes along the major
 //! axis for footprints up to 16 times (by default) as long as wide. Isotropic modes use the exact major axis. The
 //! target pixel kernel of the probe line is a box along the major axis; across it, the tent of the trilinear lookup.
+//!
+//! # Boxes along the axes: [`RipMap`], [`SummedArea`]
+//! Two other tables of one texture: levels halved along s and t independently, and the sums of all rectangles. Both
+//! stand for a box along the axes of texture space, of the footprint's variance in s and in t.
 //!
 //! # Conventions
 //! Level 0 is the finest. λ ≤ 0 is magnification. Axes are full lengths for a pixel of diameter 1.
@@ -45,17 +52,23 @@
 //! | axes | 1e-6 relative up to aspect 10⁶ | `tests/properties/footprint.rs` |
 //! | [`lod`] | [`LOD_MAX_ABS_ERROR`] | `tests/properties/lod.rs` |
 //! | mean of a level, before storage | 1e-6 relative | `tests/properties/pyramid.rs` |
+//! | ∫ L dω of an environment's level | 1e-6 relative | `tests/properties/content.rs` |
+//! | alpha-tested coverage | nearest texel but for ties; 0.5 % from 32² texels | `tests/properties/content.rs` |
+//! | mean by a wide kernel | [`pyramid::WIDE_KERNEL_MEAN_ERROR`] | `tests/properties/kernels.rs` |
 //! | stored components | nearest code | `tests/properties/pyramid.rs` |
 //! | [`sample`] against its f64 kernel | 1e-5 of the texels' range | `tests/properties/anisotropic.rs` |
+//! | [`RipMap`] against its f64 kernel | 1e-5 of the texels' range | `tests/properties/rip_map.rs` |
+//! | [`SummedArea`] against the integral | 1e-6 of the texels' range | `tests/properties/summed_area.rs` |
 //! | continuity over derivatives | ≤ 1/255 per 1e-3 step | `tests/properties/filtering.rs` |
 //!
 //! # Limits
-//! Box-filtered levels only. No LOD bias, no elliptical filter and no summed-area table yet. Alpha-tested coverage is
-//! not kept per level.
+//! Environments are reduced by the box alone, and a cube's faces each on its own. Texels that tie in alpha and in the
+//! alpha around them are drawn or hidden together: a one-texel checker has a coverage of 0 or 1.
 //!
 //! # Sources
 //! Williams 1983, "Pyramidal Parametrics"; Heckbert 1989, "Fundamentals of Texture Mapping and Image Warping";
-//! McCormack et al. 1999, "Feline"; Vulkan 1.3, "Image Operations".
+//! McCormack et al. 1999, "Feline"; Castaño 2010, "Computing Alpha Mipmaps"; Crow 1984, "Summed-Area Tables for
+//! Texture Mapping"; Vulkan 1.3, "Image Operations".
 #![forbid(unsafe_code)]
 
 mod automatic;

@@ -59,6 +59,20 @@ pub enum Error {
         /// Format of the first face.
         expected: Format,
     },
+    /// The bands that are to hide a seam are empty or meet.
+    #[error("overlap of {overlap} texels; give 1 to {most}, half the shorter side")]
+    Overlap {
+        /// The overlap asked for, in texels.
+        overlap: u32,
+        /// Half the side that it does not fit.
+        most: u32,
+    },
+    /// Components that are infinite or NaN have no rank among the others.
+    #[error("texture with {components} components that are infinite or NaN; repair it first")]
+    NotFinite {
+        /// How many there are.
+        components: u64,
+    },
     /// The buffer does not hold width · height · channels components.
     #[error(
         "texture of {}×{} texels with {channels} channels needs {expected} components, got {actual}",

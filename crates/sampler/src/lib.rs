@@ -33,6 +33,9 @@
 //! comparisons of depths; [`pick`] reads one texel, right on average. Filtered colour that belongs to alpha should
 //! be premultiplied: [`Texture::premultiplied`] before, [`unpremultiply`] after.
 //!
+//! # Patterns in space: [`solid`]
+//! Checkers, stripes, grids, noise, marble, wood, stone and clouds, filtered over the pixel's box.
+//!
 //! # Conventions
 //! Texture origin at the top left, s to the right, t down, as glTF. The lectures' upward t is 1 − t. Coordinates
 //! are f64, because a repeat counter of 10⁶ leaves an f32 with no texel position to speak of.
@@ -46,6 +49,7 @@
 //! | envelope, constants | exact | `tests/properties/bilinear.rs` |
 //! | [`bilinear_codes`], 8 bit | exactly rounded | `tests/properties/codes.rs` |
 //! | [`bilinear_fixed`], 8 bit | [`BILINEAR_FIXED_MAX_ERROR`] | `tests/properties/fixed.rs` |
+//! | [`solid`] checkers, stripes, grids over a box | 1e-6 | `tests/properties/solid_regular.rs` |
 //! | [`bicubic`] | [`BICUBIC_MAX_ERROR_ULPS`] ulp of the largest texel read | `tests/properties/bicubic.rs` |
 //! | sRGB decode, 8 and 16 bit | nearest f32 | `tests/properties/transfer.rs` |
 //! | sRGB encode, 8 bit | exactly rounded for all 2³² inputs | `tests/properties/transfer.rs` |
@@ -69,8 +73,10 @@ mod format;
 #[cfg(feature = "image")]
 mod image;
 mod non_finite;
+pub mod solid;
 mod texel;
 mod texture;
+pub mod tile;
 pub mod transfer;
 pub mod volume;
 mod weighted;

@@ -261,7 +261,7 @@ impl Texture {
     }
 }
 
-fn component_count(size: UVec2, channels: u8) -> Result<usize, Error> {
+pub(crate) fn component_count(size: UVec2, channels: u8) -> Result<usize, Error> {
     if size.x == 0 || size.y == 0 {
         return Err(Error::EmptySize { size });
     }

@@ -22,7 +22,7 @@ const JPEG_QUALITY: u8 = 92;
 
 /// Row filter of PNG files: of rendered pictures it makes files as small as choosing one for each row
 /// does, in a half to a tenth of the time.
-const PNG_FILTER: FilterType = FilterType::Paeth;
+pub(super) const PNG_FILTER: FilterType = FilterType::Paeth;
 
 /// A format of picture files.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -4,6 +4,7 @@ mod aov;
 mod encode;
 mod exr;
 mod replace;
+mod texture;
 mod tonemap;
 
 use std::path::Path;
@@ -17,6 +18,7 @@ pub use encode::{BitDepth, FileFormat};
 pub use replace::check_folder;
 #[cfg(feature = "frontier")]
 pub(crate) use replace::replace;
+pub use texture::{check_holds_texture, save_texture};
 pub use tonemap::ToneMap;
 
 /// How a film becomes a picture.

@@ -11,6 +11,7 @@ mod container;
 mod extensions;
 mod material;
 mod nodes;
+mod picture;
 mod pose;
 mod primitive;
 mod texture;
@@ -22,6 +23,7 @@ use std::path::Path;
 use crate::error::Error;
 use crate::scene::Scene;
 use buffers::Buffers;
+pub use picture::load_texture;
 
 /// What a reader may do, and which moment of an animation it reads.
 #[derive(Clone, Debug)]

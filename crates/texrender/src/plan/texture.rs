@@ -47,6 +47,21 @@ pub enum TextureRole {
     Normal,
 }
 
+impl TextureRole {
+    /// The role that serves both, if one does.
+    ///
+    /// Only the green of a metallic-roughness map is not plain data; no other map of data reads green (occlusion is
+    /// red, specular alpha), so that one image that packs them all is prepared once.
+    fn united(self, other: Self) -> Option<Self> {
+        match (self, other) {
+            (Self::Data, Self::MetallicRoughness) | (Self::MetallicRoughness, Self::Data) => {
+                Some(Self::MetallicRoughness)
+            }
+            _ => (self == other).then_some(self),
+        }
+    }
+}
+
 /// Whether mip levels are built.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum PyramidNeed {
@@ -57,7 +72,7 @@ pub enum PyramidNeed {
 }
 
 impl TextureNeed {
-    /// Lists a need, merged with an equal one; returns its index.
+    /// Lists a need, merged with one that serves it or that it serves; returns its index.
     pub(super) fn list(
         needs: &mut Vec<Self>,
         image: usize,
@@ -67,7 +82,7 @@ impl TextureNeed {
     ) -> usize {
         let found = needs
             .iter()
-            .position(|need| need.image == image && need.role == role);
+            .position(|need| need.image == image && need.role.united(role).is_some());
         let index = found.unwrap_or_else(|| {
             needs.push(Self {
                 image,
@@ -80,6 +95,7 @@ impl TextureNeed {
             needs.len() - 1
         });
         let need = &mut needs[index];
+        need.role = need.role.united(role).unwrap_or(role);
         need.pyramid = need.pyramid.max(pyramid);
         if !need.reasons.contains(&reason) {
             need.reasons.push(reason);

@@ -29,6 +29,8 @@ pub(crate) enum Command {
     Render(Box<RenderArgs>),
     /// Print what a scene holds, and what a picture of it needs and why.
     Inspect(Box<InspectArgs>),
+    /// Measure a texture's seam, make it repeat without one, or make more of it that does not repeat.
+    Tile(TileArgs),
     /// Measure every texture filter: its speed against its error, as data, plots and one HTML page.
     Frontier(FrontierArgs),
 }
@@ -65,6 +67,30 @@ pub(crate) struct InspectArgs {
     pub scene: PathBuf,
     #[command(flatten)]
     pub picture: PictureArgs,
+}
+
+#[derive(Args)]
+pub(crate) struct TileArgs {
+    /// Picture to start from: .png, .jpg or .webp.
+    pub picture: PathBuf,
+    /// Picture to write: .png. The same texture without a seam, unless --repeat or --expand ask for more.
+    #[arg(short, long, value_name = "FILE", required_unless_present = "seam")]
+    pub output: Option<PathBuf>,
+    /// Print how large the step across the wrap is, against steps inside: 1 is no seam.
+    #[arg(long)]
+    pub seam: bool,
+    /// Texels from each border that are blended, at most half a side; a quarter if left out.
+    #[arg(long, value_name = "N", requires = "output")]
+    pub overlap: Option<u32>,
+    /// Write so many copies side by side.
+    #[arg(long, value_name = "WxH", requires = "output", value_parser = values::size, conflicts_with = "expand")]
+    pub repeat: Option<(u32, u32)>,
+    /// Write a texture of so many times the size that does not repeat.
+    #[arg(long, value_name = "WxH", requires = "output", value_parser = values::size)]
+    pub expand: Option<(u32, u32)>,
+    /// Another seed makes another texture.
+    #[arg(long, value_name = "N", default_value_t = 0, requires = "expand")]
+    pub seed: u64,
 }
 
 #[derive(Args)]

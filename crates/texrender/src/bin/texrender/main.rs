@@ -6,6 +6,7 @@ mod inspect;
 mod progress;
 mod render;
 mod stats;
+mod tile;
 mod values;
 
 use std::process::ExitCode;
@@ -19,6 +20,7 @@ fn main() -> ExitCode {
     let done = match Cli::parse().command {
         Command::Render(args) => render::run(&args),
         Command::Inspect(args) => inspect::run(&args),
+        Command::Tile(args) => tile::run(&args),
         Command::Frontier(args) => frontier::run(&args),
     };
     match done {
