@@ -2,7 +2,7 @@
 
 use glam::{DVec2, UVec2};
 
-use super::scene::ExactFootprint;
+use super::homography::ExactFootprint;
 
 /// Standard deviation of the Gaussian pixel, in pixels.
 pub const GAUSSIAN_SIGMA: f64 = 0.5;

@@ -22,10 +22,13 @@
 //! Filters in Computer Graphics", for why the kernel has to be named.
 
 mod charts;
+mod codes;
 mod crops;
 mod csv;
+mod family;
 mod filters;
 mod frame;
+mod homography;
 mod kernel;
 mod labels;
 mod measure;
@@ -45,15 +48,17 @@ use glam::UVec2;
 use crate::error::Error;
 
 pub use crops::{CropSet, FULL_SCALE_ERROR, FilterCrop, Picture};
+pub use family::Family;
 pub use filters::{FilterSetting, Lookup, Prepared, Run, filter_settings};
 pub use frame::{CLEAR, draw};
+pub use homography::{ExactFootprint, Homography};
 pub use kernel::{GAUSSIAN_CUT, GAUSSIAN_SIGMA, PixelKernel, Reconstruction, Target, ellipse_axes};
 pub use measure::{Crops, Effort, KERNELS, Sheet};
 pub use peers::Peer;
-pub use plot::{Family, Front, Plot, Point, pareto_front};
+pub use plot::{Front, Plot, Point, pareto_front};
 pub use reference::{Reference, SampleCount, reference};
 pub use save::make_folder;
-pub use scene::{CROP_SIZE, Crop, ExactFootprint, Homography, Lattice, Scene, SceneTextures};
+pub use scene::{CROP_SIZE, Crop, Lattice, Scene, SceneTextures};
 pub use table::{COLUMNS, Errors, Row, from_csv, to_csv};
 pub use texture::{Channels, TestTexture};
 use timing::Times;
