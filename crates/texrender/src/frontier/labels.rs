@@ -123,6 +123,6 @@ mod tests {
     fn a_lonely_label_stands_to_the_right() {
         let places = place(&[(100, 100)], &["abc".to_owned()], &[], [0, 0, 300, 200]);
         let [left, top, _, bottom] = places[0].unwrap();
-        assert_eq!((left, top, bottom), (109, 93, 108));
+        assert_eq!((left, top, bottom), (110, 93, 108));
     }
 }
