@@ -85,3 +85,31 @@ fn unbounded_derivatives_are_unbounded_footprints() {
         assert_eq!((axes.direction, axes.anisotropy()), (Vec2::ZERO, 1.0));
     }
 }
+
+/// B2: every aspect and turn of the catalogue, at scales from 1e-20 to 1e20: both axes within 1e-6, at bounded cost.
+#[test]
+fn b2_axes_hold_over_aspects_turns_and_scales() {
+    let turns = (0..16).map(|k| f64::from(k) * std::f64::consts::PI / 8.0);
+    for turn in turns {
+        for aspect in [1.0, 1.0 + 1e-6, 1.0 - 1e-6, 8.0, 16.0, 1e3, 1e6] {
+            for scale in [1e-20, 1e-6, 1.0, 1e6, 1e20] {
+                let [dx, dy] = crate::strategies::turned(turn, 0.3 * turn, scale, scale / aspect);
+                let (dx, dy) = (dx.as_vec2(), dy.as_vec2());
+                let [major, minor] = singular_values(UVec2::splat(64), dx, dy);
+                let axes = footprint_axes(UVec2::splat(64), dx, dy);
+                let near =
+                    |got: f32, expected: f64| (f64::from(got) / expected - 1.0).abs() <= 1e-6;
+                assert!(
+                    near(axes.major, major),
+                    "{turn} {aspect} {scale}: {} {major}",
+                    axes.major
+                );
+                assert!(
+                    near(axes.minor, minor),
+                    "{turn} {aspect} {scale}: {} {minor}",
+                    axes.minor
+                );
+            }
+        }
+    }
+}

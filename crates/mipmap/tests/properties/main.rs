@@ -20,3 +20,4 @@ mod rip_map;
 mod stochastic;
 mod strategies;
 mod summed_area;
+mod verifier;

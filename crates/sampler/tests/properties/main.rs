@@ -20,4 +20,5 @@ mod storage;
 mod strategies;
 mod tile;
 mod transfer;
+mod verifier;
 mod volume;
