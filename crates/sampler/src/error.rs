@@ -73,6 +73,15 @@ pub enum Error {
         /// How many there are.
         components: u64,
     },
+    /// An EXR layer has no channels that make a texture.
+    #[error(
+        "EXR layer with channels {names}; a texture needs R, G and B, or Y, or a single one, of f16 or f32"
+    )]
+    #[cfg(feature = "exr")]
+    ExrChannels {
+        /// The channels that it has.
+        names: String,
+    },
     /// The buffer does not hold width · height · channels components.
     #[error(
         "texture of {}×{} texels with {channels} channels needs {expected} components, got {actual}",

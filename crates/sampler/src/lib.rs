@@ -72,6 +72,8 @@ mod alpha;
 mod compare;
 pub mod cube;
 mod error;
+#[cfg(feature = "exr")]
+mod exr;
 mod filter;
 mod format;
 #[cfg(feature = "image")]

@@ -9,6 +9,7 @@ mod bicubic;
 mod bilinear;
 mod codes;
 mod compare;
+mod conversions;
 mod cube;
 mod fixed;
 mod non_finite;
