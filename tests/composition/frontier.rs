@@ -10,6 +10,7 @@ use texrender::frontier::{
 
 /// As little work as gives figures that hold.
 const SMALL: Effort = Effort {
+    box_spacing: 3,
     thinning: 3,
     samples: SampleCount {
         strata: [12, 24, 48],
@@ -32,7 +33,7 @@ fn frontier(scene: &str, effort: Effort) -> Frontier {
         effort,
         peers: Vec::new(),
     };
-    measure(&options, &|_, _| {})
+    measure(&options, &|_, _| {}).unwrap()
 }
 
 /// RMSE of a filter with a setting against a kernel.
@@ -49,7 +50,7 @@ fn errors_are_those_that_other_programs_found() {
     let plane = frontier(
         "plane",
         Effort {
-            thinning: 1,
+            thinning: 16,
             samples: SampleCount {
                 strata: [8, 16, 32],
             },
@@ -80,6 +81,7 @@ fn errors_are_those_that_other_programs_found() {
 fn filters_keep_their_promises_on_the_floor() {
     // The noise of a reference counts as error of the best filters.
     let precise = Effort {
+        box_spacing: 6,
         thinning: 6,
         samples: SampleCount {
             strata: [48, 64, 96],
@@ -104,6 +106,7 @@ fn filters_keep_their_promises_on_the_floor() {
 #[test]
 fn all_but_times_is_the_same_again() {
     let small = Effort {
+        box_spacing: 12,
         thinning: 12,
         ..SMALL
     };
@@ -127,6 +130,7 @@ fn a_report_is_whole() {
     let mut frontier = frontier(
         "floor",
         Effort {
+            box_spacing: 16,
             thinning: 16,
             crops: Crops::Made(SampleCount { strata: [2; 3] }),
             ..SMALL
@@ -253,13 +257,14 @@ fn an_added_texture_is_measured_under_its_name() {
         ],
         texture: Some(TestTexture::load(&path).unwrap()),
         effort: Effort {
+            box_spacing: 16,
             thinning: 16,
             textures: 0,
             ..SMALL
         },
         peers: Vec::new(),
     };
-    let frontier = measure(&options, &|_, _| {});
+    let frontier = measure(&options, &|_, _| {}).unwrap();
     // `grazing` is for its own texture only.
     let names: Vec<&str> = frontier.sheets.iter().map(|s| s.texture.as_str()).collect();
     assert_eq!(names, ["two__three"]);

@@ -1,8 +1,9 @@
 //! Which plots a sheet gets, and how it compares with peers.
 
+use super::family::Family;
 use super::measure::{KERNELS, Sheet};
 use super::peers::Peer;
-use super::plot::{Family, Front, Plot, Point, pareto_front};
+use super::plot::{Front, Plot, Point, pareto_front};
 use super::table::Row;
 
 /// A plot with the name of its file.

@@ -190,7 +190,7 @@ impl Picture {
             None => (self.codes.as_flattened(), ExtendedColorType::Rgb8),
         };
         let mut bytes = Cursor::new(Vec::new());
-        PngEncoder::new_with_quality(&mut bytes, CompressionType::Best, FilterType::Adaptive)
+        PngEncoder::new_with_quality(&mut bytes, CompressionType::Default, FilterType::Adaptive)
             .write_image(codes, self.size.x, self.size.y, colour)
             .expect("memory takes it, and there are as many codes as the size says");
         bytes.into_inner()

@@ -2,13 +2,14 @@
 
 use glam::{UVec2, Vec4};
 use mipmap::{
-    Content, EwaTier, Footprint, LodRule, MipFilter, ProbeWeights, Pyramid, SamplerState,
-    blue_noise, ewa, sample, stochastic,
+    Content, EwaTier, Footprint, LodRule, MipFilter, ProbeWeights, Pyramid, RipMap, SamplerState,
+    SummedArea, Tolerance, automatic, blue_noise, ewa, sample, stochastic,
 };
 use sampler::{AddressMode, Cubic, Filter, Precision};
 
 use super::kernel::{PixelKernel, Reconstruction, Target};
 use super::texture::TestTexture;
+use crate::error::Error;
 
 /// Some pixels of a frame.
 #[derive(Debug, Clone, Copy)]
@@ -48,15 +49,27 @@ impl std::fmt::Debug for FilterSetting<'_> {
 #[derive(Debug)]
 pub struct Prepared {
     pyramid: Pyramid,
+    rip_map: RipMap,
+    summed_area: SummedArea,
 }
 
 impl Prepared {
     /// Builds every form of `texture`.
-    pub fn new(texture: &TestTexture) -> Self {
-        Self {
-            pyramid: Pyramid::build(texture.to_texture(), Content::Data)
-                .expect("data can be reduced whatever it is"),
-        }
+    ///
+    /// # Errors
+    /// [`Error::Image`] if it is too large for one of them.
+    pub fn new(texture: &TestTexture) -> Result<Self, Error> {
+        let build = || -> Result<Self, mipmap::Error> {
+            Ok(Self {
+                pyramid: Pyramid::build(texture.to_texture(), Content::Data)?,
+                rip_map: RipMap::build(texture.to_texture(), Content::Data)?,
+                summed_area: SummedArea::build(&texture.to_texture())?,
+            })
+        };
+        build().map_err(|error| Error::Image {
+            name: texture.name.clone(),
+            detail: error.to_string(),
+        })
     }
 }
 
@@ -67,7 +80,9 @@ pub fn filter_settings(prepared: &Prepared) -> Vec<FilterSetting<'_>> {
     all.extend(isotropic(pyramid));
     all.extend(probe_lines(pyramid));
     all.extend(elliptic(pyramid));
+    all.extend(upright(prepared));
     all.extend(stochastic_means(pyramid));
+    all.extend(automatics(pyramid));
     all
 }
 
@@ -156,6 +171,7 @@ fn probe_lines(pyramid: &Pyramid) -> Vec<FilterSetting<'_>> {
     let mut all: Vec<_> = [2, 4, 8, 16, 32, 64]
         .map(|n| line(n, "exact", PixelKernel::Axes, |state| state))
         .into();
+    all.extend([2, 4, 8, 16].map(|n| line(n, "bias-0.5", PixelKernel::Axes, biased)));
     all.extend([4, 16].map(|n| line(n, "fixed", PixelKernel::Axes, fixed)));
     all.push(line(16, "max-length", PixelKernel::Axes, max_length));
     all.extend([4, 16].map(|n| line(n, "gaussian", PixelKernel::Ellipse, gaussian)));
@@ -175,6 +191,35 @@ fn elliptic(pyramid: &Pyramid) -> Vec<FilterSetting<'_>> {
         line("standard", EwaTier::Standard),
         line("best", EwaTier::Best),
     ]
+}
+
+/// Boxes along the axes of the texture.
+fn upright(prepared: &Prepared) -> Vec<FilterSetting<'_>> {
+    let Prepared {
+        rip_map,
+        summed_area,
+        ..
+    } = prepared;
+    let repeat = [AddressMode::Repeat; 2];
+    let own = Target::bilinear(PixelKernel::Bounds);
+    let rip_map = each(move |footprint| rip_map.sample(repeat, footprint));
+    let summed_area = each(move |footprint| summed_area.sample(repeat, footprint));
+    vec![
+        entry("rip_map", "exact", own, rip_map),
+        entry("sat", "exact", own, summed_area),
+    ]
+}
+
+/// The cheapest reading that a tolerance allows.
+fn automatics(pyramid: &Pyramid) -> Vec<FilterSetting<'_>> {
+    let line = |tolerance: f32| {
+        let bound = Tolerance::new(tolerance).expect("above 0");
+        let state = SamplerState::default();
+        let lookup = each(move |footprint| automatic(pyramid, &state, bound, footprint));
+        let own = Target::bilinear(PixelKernel::Parallelogram);
+        entry("automatic", &tolerance.to_string(), own, lookup)
+    };
+    [0.1, 0.05, 0.02, 0.01].map(line).into()
 }
 
 /// The mean of a few texels picked at random, as trilinear and 16 times anisotropic filtering weighs them.
@@ -198,6 +243,13 @@ fn stochastic_means(pyramid: &Pyramid) -> Vec<FilterSetting<'_>> {
 fn fixed(state: SamplerState) -> SamplerState {
     SamplerState {
         precision: Precision::Fixed,
+        ..state
+    }
+}
+
+fn biased(state: SamplerState) -> SamplerState {
+    SamplerState {
+        lod_bias: -0.5,
         ..state
     }
 }

@@ -2,7 +2,7 @@
 
 use glam::{DVec2, UVec2};
 
-use super::scene::ExactFootprint;
+use super::homography::ExactFootprint;
 
 /// Standard deviation of the Gaussian pixel, in pixels.
 pub const GAUSSIAN_SIGMA: f64 = 0.5;
@@ -20,8 +20,10 @@ pub enum PixelKernel {
     Box,
     /// A Gaussian about the pixel's centre, σ = ½ pixel, cut at 4σ in x and in y, through the true perspective.
     Gaussian,
-    /// The Gaussian pixel through the footprint alone, as if the texture were parallel to the screen around the pixel:
-    /// what elliptical filters approximate.
+    /// The pixel's unit square through the footprint alone, as if the texture were parallel to the screen around the
+    /// pixel.
+    Parallelogram,
+    /// The Gaussian pixel through the footprint alone, in the same way: what elliptical filters approximate.
     Ellipse,
     /// A square in texture space along its axes, as wide as the footprint's major axis: what an isotropic mip lookup
     /// approximates.
@@ -75,6 +77,7 @@ impl PixelKernel {
             Self::Point => "point",
             Self::Box => "box",
             Self::Gaussian => "Gaussian",
+            Self::Parallelogram => "parallelogram",
             Self::Ellipse => "ellipse",
             Self::Square => "square",
             Self::Axes => "axes",

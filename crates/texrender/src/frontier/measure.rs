@@ -14,11 +14,15 @@ use super::scene::Scene;
 use super::table::{Errors, Row};
 use super::texture::TestTexture;
 use super::timing::{Times, TimingEffort};
+use crate::error::Error;
 
 /// How much work a measurement is.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Effort {
-    /// Of the pixels that a scene takes errors at, every so many-th each way; at least 1.
+    /// Least distance, in pixels, of the pixels that errors against the box are taken at: a scene whose own pixels lie
+    /// as far apart keeps them all.
+    pub box_spacing: u32,
+    /// Of the pixels that a scene takes errors at, every so many-th each way for the other kernels; at least 1.
     pub thinning: u32,
     /// Samples of the references that errors are taken against.
     pub samples: SampleCount,
@@ -33,26 +37,28 @@ pub struct Effort {
 /// Whether crops are made.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Crops {
-    /// All of a scene's, their references with so many samples.
+    /// All of a scene's, with its first texture and that of the caller, their references with so many samples.
     Made(SampleCount),
     /// None.
     LeftOut,
 }
 
 impl Effort {
-    /// For a result in a minute or two: a ninth of the pixels, at most two textures a scene, fewer frames.
+    /// For a result in a minute or two: a ninth of the pixels but for the box on sparse scenes, at most two textures a
+    /// scene, fewer frames.
     pub const QUICK: Self = Self {
+        box_spacing: 3,
         thinning: 3,
         samples: SampleCount {
             strata: [16, 32, 64],
         },
         textures: 2,
         timing: TimingEffort {
-            lookups: 16_000,
-            passes: 5,
+            lookups: 8_000,
+            passes: 4,
             frames: 5,
-            frame_seconds: 0.1,
-            longest_frame_seconds: 0.25,
+            frame_seconds: 0.04,
+            longest_frame_seconds: 0.12,
         },
         crops: Crops::Made(SampleCount {
             strata: [8, 16, 32],
@@ -61,6 +67,7 @@ impl Effort {
 
     /// For figures to quote: all pixels, four times the samples.
     pub const FULL: Self = Self {
+        box_spacing: 1,
         thinning: 1,
         samples: SampleCount {
             strata: [32, 64, 128],
@@ -70,8 +77,8 @@ impl Effort {
             lookups: 48_000,
             passes: 11,
             frames: 15,
-            frame_seconds: 1.5,
-            longest_frame_seconds: 3.0,
+            frame_seconds: 0.8,
+            longest_frame_seconds: 1.0,
         },
         crops: Crops::Made(SampleCount {
             strata: [16, 32, 64],
@@ -86,8 +93,8 @@ pub struct Sheet {
     pub scene: Scene,
     /// Name of the texture.
     pub texture: String,
-    /// Pixels that errors were taken at.
-    pub pixels: usize,
+    /// Pixels that errors against the box were taken at, and against the other kernels.
+    pub pixels: [usize; 2],
     /// Each filter's own kernel, in the order of the rows.
     pub own: Vec<PixelKernel>,
     /// Upper bounds of the noise of references, RMS.
@@ -101,31 +108,32 @@ pub struct Sheet {
 /// Measures every filter on `scene` with `texture`, on the current pool.
 ///
 /// `known`: times of the same filters on the same scene with another texture of the same size.
+///
+/// # Errors
+/// As [`Prepared::new`].
 pub(super) fn sheet(
     scene: &Scene,
     texture: &TestTexture,
     effort: &Effort,
     known: Option<Times>,
-) -> (Sheet, Times) {
-    let prepared = Prepared::new(texture);
+) -> Result<(Sheet, Times), Error> {
+    let prepared = Prepared::new(texture)?;
     let filters = filter_settings(&prepared);
-    let pixels = scene.error_pixels(effort.thinning);
-    let footprints: Vec<Footprint> = pixels
-        .iter()
-        .filter_map(|&pixel| scene.footprint(pixel))
-        .map(|footprint| footprint.rounded())
-        .collect();
-
     // Errors, each reference made once.
+    let places = [
+        Places::of(scene, effort.box_spacing.div_ceil(scene.lattice.step)),
+        Places::of(scene, effort.thinning),
+    ];
     let mut references = HashMap::new();
     let mut errors = Vec::new();
     for filter in &filters {
-        let colours = answers(filter, &pixels, &footprints);
+        let colours = places.each_ref().map(|places| places.answers(filter));
         for (kernel, target) in targets(filter) {
-            let reference = references
-                .entry(target)
-                .or_insert_with(|| reference(scene, texture, &pixels, target, effort.samples));
-            errors.push((kernel, errors_of(&colours, reference)));
+            let set = usize::from(target.kernel != PixelKernel::Box);
+            let reference = references.entry(target).or_insert_with(|| {
+                reference(scene, texture, &places[set].pixels, target, effort.samples)
+            });
+            errors.push((kernel, errors_of(&colours[set], reference)));
         }
     }
 
@@ -143,7 +151,7 @@ pub(super) fn sheet(
     let sheet = Sheet {
         scene: scene.clone(),
         texture: texture.name.clone(),
-        pixels: pixels.len(),
+        pixels: places.map(|places| places.pixels.len()),
         own: filters.iter().map(|filter| filter.own.kernel).collect(),
         noise: noise(&references),
         rows: errors
@@ -156,7 +164,7 @@ pub(super) fn sheet(
             Crops::LeftOut => Vec::new(),
         },
     };
-    (sheet, times)
+    Ok((sheet, times))
 }
 
 /// Kernels as the table names them.
@@ -176,6 +184,7 @@ fn noise(references: &HashMap<Target, Reference>) -> Vec<(PixelKernel, f64)> {
     let sampled = [
         PixelKernel::Box,
         PixelKernel::Gaussian,
+        PixelKernel::Parallelogram,
         PixelKernel::Ellipse,
         PixelKernel::Square,
         PixelKernel::Axes,
@@ -190,17 +199,37 @@ fn noise(references: &HashMap<Target, Reference>) -> Vec<(PixelKernel, f64)> {
         .collect()
 }
 
-fn answers(filter: &FilterSetting<'_>, pixels: &[UVec2], footprints: &[Footprint]) -> Vec<Vec4> {
-    const TASK: usize = 4096;
-    let mut colours = vec![Vec4::ZERO; footprints.len()];
-    pixels
-        .par_chunks(TASK)
-        .zip(footprints.par_chunks(TASK))
-        .zip(colours.par_chunks_mut(TASK))
-        .for_each(|((pixels, footprints), colours)| {
-            (filter.lookup)(Run { pixels, footprints }, colours);
-        });
-    colours
+/// Some pixels of a scene.
+struct Places {
+    pixels: Vec<UVec2>,
+    footprints: Vec<Footprint>,
+}
+
+impl Places {
+    /// Every `thinning`-th of the scene's own, each way.
+    fn of(scene: &Scene, thinning: u32) -> Self {
+        let mut pixels = scene.error_pixels(thinning);
+        let footprint = |&pixel: &UVec2| scene.footprint(pixel);
+        pixels.retain(|pixel| footprint(pixel).is_some());
+        let footprints = pixels.iter().filter_map(footprint);
+        Self {
+            footprints: footprints.map(|footprint| footprint.rounded()).collect(),
+            pixels,
+        }
+    }
+
+    fn answers(&self, filter: &FilterSetting<'_>) -> Vec<Vec4> {
+        const TASK: usize = 4096;
+        let mut colours = vec![Vec4::ZERO; self.pixels.len()];
+        self.pixels
+            .par_chunks(TASK)
+            .zip(self.footprints.par_chunks(TASK))
+            .zip(colours.par_chunks_mut(TASK))
+            .for_each(|((pixels, footprints), colours)| {
+                (filter.lookup)(Run { pixels, footprints }, colours);
+            });
+        colours
+    }
 }
 
 fn errors_of(colours: &[Vec4], reference: &Reference) -> Errors {

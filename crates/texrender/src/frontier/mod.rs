@@ -22,10 +22,13 @@
 //! Filters in Computer Graphics", for why the kernel has to be named.
 
 mod charts;
+mod codes;
 mod crops;
 mod csv;
+mod family;
 mod filters;
 mod frame;
+mod homography;
 mod kernel;
 mod labels;
 mod measure;
@@ -42,16 +45,20 @@ mod timing;
 
 use glam::UVec2;
 
+use crate::error::Error;
+
 pub use crops::{CropSet, FULL_SCALE_ERROR, FilterCrop, Picture};
+pub use family::Family;
 pub use filters::{FilterSetting, Lookup, Prepared, Run, filter_settings};
 pub use frame::{CLEAR, draw};
+pub use homography::{ExactFootprint, Homography};
 pub use kernel::{GAUSSIAN_CUT, GAUSSIAN_SIGMA, PixelKernel, Reconstruction, Target, ellipse_axes};
 pub use measure::{Crops, Effort, KERNELS, Sheet};
 pub use peers::Peer;
-pub use plot::{Family, Front, Plot, Point, pareto_front};
+pub use plot::{Front, Plot, Point, pareto_front};
 pub use reference::{Reference, SampleCount, reference};
 pub use save::make_folder;
-pub use scene::{CROP_SIZE, Crop, ExactFootprint, Homography, Lattice, Scene, SceneTextures};
+pub use scene::{CROP_SIZE, Crop, Lattice, Scene, SceneTextures};
 pub use table::{COLUMNS, Errors, Row, from_csv, to_csv};
 pub use texture::{Channels, TestTexture};
 use timing::Times;
@@ -86,33 +93,40 @@ pub struct Frontier {
 /// Measures every filter on every scene, frames on all threads of the current rayon pool.
 ///
 /// `progress` is told what is next and the share that is done, 0..=1.
-pub fn measure(options: &Options, progress: &dyn Fn(&str, f32)) -> Frontier {
+///
+/// # Errors
+/// As [`Prepared::new`].
+pub fn measure(options: &Options, progress: &dyn Fn(&str, f32)) -> Result<Frontier, Error> {
     let work = work(options);
     // No filter looks at what a texel is: times of one texture are those of all of its size.
     let mut known: Vec<(&str, UVec2, Times)> = Vec::new();
-    let sheets = work.iter().enumerate().map(|(done, (scene, texture))| {
+    let mut sheets = Vec::with_capacity(work.len());
+    for (done, (scene, texture, effort)) in work.iter().enumerate() {
         progress(
             &format!("{} {}", scene.name, texture.name),
             done as f32 / work.len() as f32,
         );
-        let key = (scene.name, texture.size);
-        let times = known.iter().find(|(name, size, _)| (*name, *size) == key);
-        let times = times.map(|(.., times)| times.clone());
-        let (sheet, times) = measure::sheet(scene, texture, &options.effort, times);
-        known.push((key.0, key.1, times));
-        sheet
-    });
-    let sheets = sheets.collect();
-    Frontier {
+        let is_same =
+            |(name, size, _): &&(&str, UVec2, Times)| (*name, *size) == (scene.name, texture.size);
+        let times = known.iter().find(is_same).map(|(.., times)| times.clone());
+        let (sheet, times) = measure::sheet(scene, texture, effort, times)?;
+        known.push((scene.name, texture.size, times));
+        sheets.push(sheet);
+    }
+    Ok(Frontier {
         sheets,
         effort: options.effort,
         threads: rayon::current_num_threads(),
         peers: options.peers.clone(),
-    }
+    })
 }
 
-/// Each scene with each of its textures.
-fn work(options: &Options) -> Vec<(&Scene, TestTexture)> {
+/// Each scene with each of its textures; crops of the first and of the caller's.
+fn work(options: &Options) -> Vec<(&Scene, TestTexture, Effort)> {
+    let without_crops = Effort {
+        crops: Crops::LeftOut,
+        ..options.effort
+    };
     let mut work = Vec::new();
     for scene in &options.scenes {
         let (names, added): (&[&str], _) = match &scene.textures {
@@ -123,7 +137,15 @@ fn work(options: &Options) -> Vec<(&Scene, TestTexture)> {
             .iter()
             .filter_map(|name| TestTexture::computed(name))
             .take(options.effort.textures);
-        work.extend(computed.chain(added).map(|texture| (scene, texture)));
+        for (k, texture) in computed.enumerate() {
+            let effort = if k == 0 {
+                options.effort
+            } else {
+                without_crops
+            };
+            work.push((scene, texture, effort));
+        }
+        work.extend(added.map(|texture| (scene, texture, options.effort)));
     }
     work
 }

@@ -7,8 +7,9 @@ use base64::engine::general_purpose::STANDARD;
 
 use super::charts::{Chart, label, peer_names};
 use super::crops::{CropSet, FULL_SCALE_ERROR, Picture};
+use super::family::Family;
 use super::measure::{KERNELS, Sheet};
-use super::plot::{Family, LEAST_ERROR};
+use super::plot::LEAST_ERROR;
 use super::{Frontier, GAUSSIAN_CUT};
 
 const STYLE: &str = include_str!("page.css");
@@ -44,10 +45,6 @@ fn introduction(frontier: &Frontier, command: &str) -> String {
             ),
         );
     }
-    let thinning = match frontier.effort.thinning {
-        0 | 1 => String::new(),
-        n => format!(" (one in {} here)", n * n),
-    };
     format!(
         "<header>\n<h1>Texture filters: speed against error</h1>\n\
          <p class=\"lead\">How long each filter takes for a pixel, and how far its colour is from what that pixel \
@@ -68,7 +65,7 @@ fn introduction(frontier: &Frontier, command: &str) -> String {
          <li>References: {few}, {some} or {many} samples a pixel, one in each cell of a grid, for footprints under 8, \
          under 64, and from 64 texels in length. The noise stated with each scene is an upper bound, the RMS of half \
          the difference between two halves of the samples; differences of its size mean little.</li>\n\
-         <li>Errors are taken over a lattice of the frame’s pixels{thinning} and over the texture’s own channels, before \
+         <li>Errors are taken over a lattice of the frame’s pixels, stated with each scene, and over the texture’s own channels, before \
          rounding to 8 bits.</li>\n\
          <li>Time a lookup: one thread, consecutive pixels of rows spread over the frame, footprints ready, the best of \
          {passes} passes over all filters. Time a frame: {threads} threads; clear, footprint of each pixel, lookup, \
@@ -125,8 +122,8 @@ fn kernels() -> String {
          <dt>own</dt><dd>What the filter says it approximates. <b>Point</b>: the texture between its texels at the \
          pixel’s centre. <b>Square</b>: a square along the texture’s axes, as wide as the footprint is long. <b>Axes</b>: \
          the rectangle that the footprint ellipse’s two axes span. <b>Bounds</b>: the upright rectangle with sides \
-         hypot(∂s/∂x, ∂s/∂y) and hypot(∂t/∂x, ∂t/∂y). <b>Ellipse</b>: the Gaussian \
-         pixel, the texture taken as flat around it. This error says how well a filter is \
+         hypot(∂s/∂x, ∂s/∂y) and hypot(∂t/∂x, ∂t/∂y). <b>Parallelogram</b> and <b>ellipse</b>: \
+         the square and the Gaussian pixel, the plane taken as parallel to the screen around it. This error says how well a filter is \
          made, not how good it looks.</dd>\n</dl>\n"
     )
 }
@@ -142,14 +139,16 @@ fn plots(frontier: &Frontier) -> String {
         push(
             &mut text,
             format_args!(
-                "<h2 id=\"{}\">{}</h2>\n<p>{}. <span class=\"quiet\">{}×{} pixels, errors at {} of them; noise of the \
+                "<h2 id=\"{}\">{}</h2>\n<p>{}. <span class=\"quiet\">{}×{} pixels; errors against the \
+                 box at {} of them, against the others at {}; noise of the \
                  references: {}.</span></p>\n",
                 sheet.stem(),
                 sheet.title(),
                 sentence(sheet.scene.about),
                 sheet.scene.size.x,
                 sheet.scene.size.y,
-                sheet.pixels,
+                sheet.pixels[0],
+                sheet.pixels[1],
                 noise.join(", "),
             ),
         );

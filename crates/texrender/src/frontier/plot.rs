@@ -4,6 +4,7 @@ use plotters::coord::Shift;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
+use super::family::Family;
 use super::labels::{self, Rectangle};
 
 /// Errors below this are drawn at it: a logarithmic axis has no zero.
@@ -21,74 +22,6 @@ pub(super) const PAPER: RGBColor = RGBColor(255, 255, 255);
 pub(super) const INK: RGBColor = RGBColor(27, 31, 36);
 pub(super) const FAINT: RGBColor = RGBColor(217, 221, 227);
 pub(super) const QUIET: RGBColor = RGBColor(107, 114, 124);
-
-/// What kind of thing a point stands for: its colour.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Family {
-    /// Level 0 only.
-    SingleLevel,
-    /// One lookup in a pyramid of square levels.
-    Isotropic,
-    /// Several lookups along the major axis.
-    ProbeLine,
-    /// Every texel under an ellipse.
-    Elliptic,
-    /// Rip-maps and summed-area tables.
-    AxisAligned,
-    /// Random texels.
-    Stochastic,
-    /// The cheapest filter that a tolerance allows.
-    Automatic,
-    /// Another renderer, by its number.
-    Peer(usize),
-}
-
-impl Family {
-    /// All but peers, with what they are called.
-    pub const NAMED: [(Self, &'static str); 7] = [
-        (Self::SingleLevel, "level 0 only"),
-        (Self::Isotropic, "one lookup in the pyramid"),
-        (Self::ProbeLine, "probes along the major axis"),
-        (Self::Elliptic, "all texels under an ellipse"),
-        (Self::AxisAligned, "rip-map, summed-area table"),
-        (Self::Stochastic, "random texels"),
-        (Self::Automatic, "automatic, by tolerance"),
-    ];
-
-    /// The family of the filter called `name`.
-    pub fn of(name: &str) -> Self {
-        match name {
-            "bilinear_mip" | "trilinear" => Self::Isotropic,
-            "rip_map" | "sat" => Self::AxisAligned,
-            _ if name.starts_with("aniso") => Self::ProbeLine,
-            _ if name.starts_with("ewa") => Self::Elliptic,
-            _ if name.starts_with("stochastic") => Self::Stochastic,
-            _ if name.starts_with("automatic") => Self::Automatic,
-            _ => Self::SingleLevel,
-        }
-    }
-
-    /// Its colour: told apart on white and on black, and by most colour-blind eyes.
-    pub fn colour(self) -> RGBColor {
-        const PEERS: [RGBColor; 5] = [
-            RGBColor(60, 120, 130),
-            RGBColor(130, 100, 60),
-            RGBColor(110, 110, 160),
-            RGBColor(140, 80, 110),
-            RGBColor(90, 130, 80),
-        ];
-        match self {
-            Self::SingleLevel => RGBColor(125, 131, 140),
-            Self::Isotropic => RGBColor(47, 126, 216),
-            Self::ProbeLine => RGBColor(224, 84, 20),
-            Self::Elliptic => RGBColor(134, 86, 214),
-            Self::AxisAligned => RGBColor(18, 150, 104),
-            Self::Stochastic => RGBColor(178, 132, 10),
-            Self::Automatic => RGBColor(214, 51, 108),
-            Self::Peer(number) => PEERS[number % PEERS.len()],
-        }
-    }
-}
 
 /// A point of a plot.
 #[derive(Debug, Clone, PartialEq)]
@@ -214,9 +147,15 @@ impl Plot {
         let places: Vec<(i32, i32)> = shown.iter().map(|p| chart.backend_coord(p)).collect();
         let (x, y) = chart.plotting_area().get_pixel_range();
         for (k, point) in self.points.iter().enumerate() {
-            draw_marker(&area, places[k], point.family, front.contains(&k))?;
+            let marker = match point.family {
+                Family::Peer(_) => Marker::Triangle,
+                _ if front.contains(&k) => Marker::Disc,
+                _ => Marker::Circle,
+            };
+            draw_marker(&area, places[k], marker, point.family.colour())?;
         }
-        self.draw_labels(&area, &places, [x.start, y.start, x.end, y.end])?;
+        let line: Vec<(i32, i32)> = front.iter().map(|&k| places[k]).collect();
+        self.draw_labels(&area, &places, &line, [x.start, y.start, x.end, y.end])?;
         area.present()?;
         Ok(())
     }
@@ -246,9 +185,15 @@ impl Plot {
         }
     }
 
-    fn draw_labels(&self, area: &Area<'_>, points: &[(i32, i32)], within: Rectangle) -> Drawn<()> {
+    fn draw_labels(
+        &self,
+        area: &Area<'_>,
+        points: &[(i32, i32)],
+        line: &[(i32, i32)],
+        within: Rectangle,
+    ) -> Drawn<()> {
         let texts: Vec<String> = self.points.iter().map(|p| p.label.clone()).collect();
-        let places = labels::place(points, &texts, within);
+        let places = labels::place(points, &texts, line, within);
         for (k, place) in places.into_iter().enumerate() {
             let Some([left, top, right, bottom]) = place else {
                 continue;
@@ -275,13 +220,22 @@ impl Plot {
     }
 }
 
-/// Filled on the front, hollow elsewhere; peers are triangles.
-fn draw_marker(area: &Area<'_>, at: (i32, i32), family: Family, on_front: bool) -> Drawn<()> {
-    let colour = family.colour();
-    match family {
-        Family::Peer(_) => area.draw(&TriangleMarker::new(at, 6, colour.filled()))?,
-        _ if on_front => area.draw(&Circle::new(at, 5, colour.filled()))?,
-        _ => {
+/// What a point looks like.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Marker {
+    /// A filled disc: on the front.
+    Disc,
+    /// A circle: off it.
+    Circle,
+    /// A triangle: a peer.
+    Triangle,
+}
+
+fn draw_marker(area: &Area<'_>, at: (i32, i32), marker: Marker, colour: RGBColor) -> Drawn<()> {
+    match marker {
+        Marker::Triangle => area.draw(&TriangleMarker::new(at, 6, colour.filled()))?,
+        Marker::Disc => area.draw(&Circle::new(at, 5, colour.filled()))?,
+        Marker::Circle => {
             area.draw(&Circle::new(at, 5, PAPER.filled()))?;
             area.draw(&Circle::new(at, 5, colour.stroke_width(2)))?;
         }

@@ -11,6 +11,8 @@ use crate::error::Error;
 const SIDE: u32 = 1024;
 /// Bytes of a raw file: 1024×1024 texels of 4.
 const RAW_BYTES: usize = 4 << 20;
+/// Longest edge of a texture from a file: rip-maps and summed-area tables of it take a gigabyte.
+const MAX_SIDE: u32 = 4096;
 /// Block sizes of the noise: 64, 32, …, 1 texels.
 const NOISE_OCTAVES: u32 = 7;
 
@@ -109,6 +111,12 @@ impl TestTexture {
                 .into_rgba8();
             (UVec2::new(image.width(), image.height()), image.into_raw())
         };
+        if size.max_element() > MAX_SIDE {
+            return Err(error(format!(
+                "{}x{} texels; make it {MAX_SIDE} or less each way",
+                size.x, size.y
+            )));
+        }
         Ok(Self::from_codes(name, size, &bytes))
     }
 

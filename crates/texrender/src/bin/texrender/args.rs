@@ -99,7 +99,7 @@ pub(crate) struct FrontierArgs {
     #[arg(short, long, value_name = "DIR")]
     pub output: PathBuf,
     /// A minute or two instead of several: all scenes but fill_min4, at most two computed textures each, a ninth of
-    /// the pixels, a quarter of the samples, fewer frames.
+    /// the pixels (plane and fills against the box: all), a quarter of the samples, fewer frames.
     #[arg(long)]
     pub quick: bool,
     /// Scene to measure: plane, grazing, floor, floor_rotated, fill_mag, fill_min4, fill_min3, or all.

@@ -34,7 +34,7 @@ pub(crate) fn run(args: &FrontierArgs) -> Result<(), Error> {
             progress.share(share);
         });
         progress.finish();
-        Ok(frontier)
+        frontier
     })?;
     frontier.save(&args.output, &command())
 }
