@@ -1,7 +1,8 @@
 //! Only what the scene needs is decoded, built or evaluated.
 
 use serde_json::json;
-use texrender::{EnvironmentSource, FilterChoice, Settings, TextureRole};
+use texrender::plan::TextureRole;
+use texrender::{EnvironmentSource, FilterChoice, Settings};
 
 use crate::glb::{Glb, film, square};
 
