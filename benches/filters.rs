@@ -2,12 +2,13 @@
 //! the pixel. Ids `mipmap/filter/NAME`.
 
 use std::hint::black_box;
+use std::sync::Arc;
 use std::time::Duration;
 
 use criterion::{BenchmarkId, Criterion, Throughput};
-use glam::{DVec2, DVec3, UVec2, Vec2};
-use mipmap::{Content, Footprint, MipFilter, Pyramid, SamplerState};
-use sampler::{Filter, Texels, Texture, Transfer};
+use glam::{DVec2, DVec3, UVec2, Vec2, Vec4};
+use mipmap::{Content, Footprint, MipFilter, Pyramid, RipMap, SamplerState, SummedArea};
+use sampler::{AddressMode, Filter, Texels, Texture, Transfer};
 
 /// Texels along an edge of the checkered texture, and of one of its cells.
 const TEXELS: u32 = 256;
@@ -25,7 +26,6 @@ const FARTHEST: f64 = 800.0;
 const RAYS: u32 = 24;
 
 pub(crate) fn bench(criterion: &mut Criterion) {
-    let pyramid = Pyramid::build(checker(), Content::Colour).expect("colour of any format");
     let pixels: Vec<(Footprint, f64)> = (0..SIZE * SIZE)
         .filter_map(|k| {
             let pixel = DVec2::new(f64::from(k % SIZE), f64::from(k / SIZE));
@@ -38,10 +38,10 @@ pub(crate) fn bench(criterion: &mut Criterion) {
         .warm_up_time(Duration::from_millis(200))
         .measurement_time(Duration::from_secs(1))
         .throughput(Throughput::Elements(pixels.len() as u64));
-    for (name, state) in states() {
-        let errors = pixels.iter().map(|(footprint, expected)| {
-            f64::from(mipmap::sample(&pyramid, &state, footprint).x) - expected
-        });
+    for (name, lookup) in lookups() {
+        let errors = pixels
+            .iter()
+            .map(|(footprint, expected)| f64::from(lookup(footprint).x) - expected);
         let (mut squares, mut worst) = (0.0, 0f64);
         for error in errors {
             squares += error * error;
@@ -55,12 +55,41 @@ pub(crate) fn bench(criterion: &mut Criterion) {
         group.bench_function(BenchmarkId::from_parameter(name), |b| {
             b.iter(|| {
                 for (footprint, _) in &pixels {
-                    black_box(mipmap::sample(&pyramid, &state, black_box(footprint)));
+                    black_box(lookup(black_box(footprint)));
                 }
             });
         });
     }
     group.finish();
+}
+
+/// A filter of the checker.
+type Lookup = Box<dyn Fn(&Footprint) -> Vec4>;
+
+/// The pyramid's filters, and those of the two tables of boxes along the axes.
+fn lookups() -> Vec<(String, Lookup)> {
+    let pyramid = Pyramid::build(checker(), Content::Colour).expect("colour of any format");
+    let pyramid = Arc::new(pyramid);
+    let mut lookups: Vec<(String, Lookup)> = states()
+        .into_iter()
+        .map(|(name, state)| {
+            let pyramid = pyramid.clone();
+            let lookup: Lookup = Box::new(move |at| mipmap::sample(&pyramid, &state, at));
+            (name, lookup)
+        })
+        .collect();
+    let address = [AddressMode::Repeat; 2];
+    let rip_map = RipMap::build(checker(), Content::Colour).expect("colour of any format");
+    let summed_area = SummedArea::build(&checker()).expect("a small texture of 8 bits");
+    lookups.push((
+        "rip_map".to_owned(),
+        Box::new(move |at| rip_map.sample(address, at)),
+    ));
+    lookups.push((
+        "summed_area".to_owned(),
+        Box::new(move |at| summed_area.sample(address, at)),
+    ));
+    lookups
 }
 
 fn states() -> Vec<(String, SamplerState)> {

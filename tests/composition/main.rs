@@ -18,3 +18,4 @@ mod needs;
 mod output;
 mod reading;
 mod showcase;
+mod tile;

@@ -57,9 +57,7 @@ impl LatLong {
     /// Texels are weighted by their solid angle, so that every level holds the energy of the map.
     #[must_use]
     pub fn with_levels(self) -> Self {
-        let content = Content::Environment(EnvironmentChart::LatLong);
-        let pyramid = Pyramid::build(self.pyramid.level(0).clone(), content)
-            .expect("a texture of any size can be a latitude-longitude map");
+        let pyramid = levels(self.pyramid.level(0).clone());
         Self { pyramid, ..self }
     }
 
@@ -137,6 +135,12 @@ impl LatLong {
             pole + (colour - pole) * (distance.max(0.0) * 2.0)
         }
     }
+}
+
+/// All levels of a map, weighted by solid angle.
+fn levels(texture: Texture) -> Pyramid {
+    Pyramid::build(texture, Content::Environment(EnvironmentChart::LatLong))
+        .expect("a texture of any size can be a latitude-longitude map")
 }
 
 /// Change of st for a change of direction:

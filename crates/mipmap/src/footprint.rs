@@ -16,12 +16,12 @@ pub struct Footprint {
 }
 
 impl Footprint {
-    /// Whether |size·dst_dx|² + |size·dst_dy|² ≤ 1, which holds the major axis to 1 texel. False for NaN.
+    /// Whether |size·dst_dx|² + |size·dst_dy|² ≤ `texels`², which holds the major axis to `texels`. False for NaN.
     #[inline]
-    pub(crate) fn is_within_texel(&self, size: UVec2) -> bool {
+    pub(crate) fn is_within(&self, texels: f32, size: UVec2) -> bool {
         let scale = size.as_dvec2();
         let [a, b] = [self.dst_dx, self.dst_dy].map(|d| d.as_dvec2() * scale);
-        a.length_squared() + b.length_squared() <= 1.0
+        a.length_squared() + b.length_squared() <= f64::from(texels * texels)
     }
 }
 

@@ -53,7 +53,7 @@
 //! | [`lod`] | [`LOD_MAX_ABS_ERROR`] | `tests/properties/lod.rs` |
 //! | mean of a level, before storage | 1e-6 relative | `tests/properties/pyramid.rs` |
 //! | ∫ L dω of an environment's level | 1e-6 relative | `tests/properties/content.rs` |
-//! | alpha-tested coverage | nearest texel but for ties; 0.5 % from 32² texels | `tests/properties/content.rs` |
+//! | alpha-tested coverage | nearest texel but for ties; 0.5 % from 32² texels | `tests/properties/coverage.rs` |
 //! | mean by a wide kernel | [`pyramid::WIDE_KERNEL_MEAN_ERROR`] | `tests/properties/kernels.rs` |
 //! | stored components | nearest code | `tests/properties/pyramid.rs` |
 //! | [`sample`] against its f64 kernel | 1e-5 of the texels' range | `tests/properties/anisotropic.rs` |

@@ -83,16 +83,22 @@ impl Runs {
         let n = i64::from(size);
         match mode {
             AddressMode::Repeat | AddressMode::MirrorRepeat => {
-                let turned = |period: i64| mode == AddressMode::MirrorRepeat && period % 2 != 0;
+                let mirrored = mode == AddressMode::MirrorRepeat;
                 let (first, last) = (low.div_euclid(n), (high - 1).div_euclid(n));
+                let part = |period: i64, [low, high]: [i64; 2]| {
+                    if mirrored && period % 2 != 0 {
+                        [n - high, n - low]
+                    } else {
+                        [low, high]
+                    }
+                };
                 let [low, high] = [low - first * n, high - last * n];
                 if first == last {
-                    self.add_within(n, [low, high], turned(first), weight);
+                    self.push(part(first, [low, high]), weight);
                 } else {
-                    self.add_within(n, [low, n], turned(first), weight);
-                    let whole = last - first - 1;
-                    self.push([0, if whole > 0 { n } else { 0 }], weight * whole as f64);
-                    self.add_within(n, [0, high], turned(last), weight);
+                    self.push(part(first, [low, n]), weight);
+                    self.push([0, n], weight * (last - first - 1) as f64);
+                    self.push(part(last, [0, high]), weight);
                 }
             }
             AddressMode::ClampToEdge => {
@@ -107,14 +113,6 @@ impl Runs {
                 self.push([n - 1, n], weight * far);
             }
             AddressMode::ClampToBorder => self.push([low.max(0), high.min(n)], weight),
-        }
-    }
-
-    fn add_within(&mut self, n: i64, [low, high]: [i64; 2], turned: bool, weight: f64) {
-        if turned {
-            self.push([n - high, n - low], weight);
-        } else {
-            self.push([low, high], weight);
         }
     }
 

@@ -96,13 +96,17 @@ impl Default for SamplerState {
 /// With major and minor the footprint's axes in texels ([`crate::footprint_axes`]):
 ///
 /// ```text
-/// η = min(major/minor, max_anisotropy, max(major, 1))      λ = log₂(major/η) + bias, within its range
+/// η = min(major/minor, max_anisotropy, max(4·major − 1, 1))
+/// λ = log₂(major/η) − 0.4·min(log₂(major/minor/η), 1) + bias, within its range
 /// ```
 ///
 /// The footprint is covered by a line of probes a distance major/η apart along the major axis, weighted as
-/// [`ProbeWeights`] says (by default as a box of length `major`); every probe filters at λ. For η = 1 that is one probe: with exact major axis,
-/// the isotropic rule. The third term keeps probes at least a texel apart. Where max_anisotropy cuts η, λ rises. The
-/// result is continuous in every input wherever magnify, minify and mip are linear.
+/// [`ProbeWeights`] says (by default as a box of length `major`); every probe filters at λ. For η = 1 that is one
+/// probe. The third term of η leaves one probe to a footprint of half a texel (of a texel, where magnification is
+/// [`Filter::Nearest`], so that no edge of a texel is softened). Where max_anisotropy cuts the aspect, λ rises; by
+/// [`LodRule::Exact`] up to 0.4 less than the longer side asks for: a square as wide as a long footprint is too wide
+/// across it. [`LodRule::MaxLength`] has no such term: it is the textbook's. The result is continuous in every input
+/// wherever magnify, minify and mip are linear.
 ///
 /// Where λ reaches a last level of one texel that is not bordered, that texel is fetched once, whatever η.
 ///
@@ -173,8 +177,13 @@ impl Plan {
             return magnified;
         }
 
-        // A texel covers the pixel: η = 1 and λ ≤ 0, whatever the axes.
-        if state.keeps_magnification() && footprint.is_within_texel(pyramid.size()) {
+        // A texel, or half a one, covers the pixel: η = 1 and λ ≤ 0, whatever the axes.
+        let one_probe = if max_anisotropy == 1.0 {
+            1.0
+        } else {
+            one_probe_until(state.magnify)
+        };
+        if state.keeps_magnification() && footprint.is_within(one_probe, pyramid.size()) {
             return magnified;
         }
 
@@ -185,8 +194,9 @@ impl Plan {
             footprint.dst_dy,
             state.lod_rule,
         );
-        let eta = followed_anisotropy(&axes, max_anisotropy);
-        let lambda = state.limited(libm::log2f(axes.major / eta));
+        let eta = followed_anisotropy(&axes, max_anisotropy, state.magnify);
+        let lambda =
+            state.limited(libm::log2f(axes.major / eta) - sharpening(&axes, eta, state.lod_rule));
         let filter = if lambda > 0.0 {
             state.minify
         } else {
@@ -216,10 +226,38 @@ impl Plan {
 }
 
 /// η: the aspect that probes follow.
-fn followed_anisotropy(axes: &AxisLengths, max_anisotropy: f32) -> f32 {
-    axes.anisotropy()
-        .min(max_anisotropy)
-        .min(axes.major.max(1.0))
+fn followed_anisotropy(axes: &AxisLengths, max_anisotropy: f32, magnify: Filter) -> f32 {
+    let most = match magnify {
+        Filter::Nearest => axes.major,
+        Filter::Bilinear | Filter::Bicubic(_) => 4.0 * axes.major - 1.0,
+    };
+    axes.anisotropy().min(max_anisotropy).min(most.max(1.0))
+}
+
+/// The major axis, in texels, up to which [`followed_anisotropy`] is 1 whatever the aspect.
+fn one_probe_until(magnify: Filter) -> f32 {
+    match magnify {
+        Filter::Nearest => 1.0,
+        Filter::Bilinear | Filter::Bicubic(_) => 0.5,
+    }
+}
+
+/// The greatest part of a level by which λ is lowered where an aspect is cut.
+///
+/// A cut footprint is filtered by squares as wide as it is long over η: too wide across it, while a level finer would
+/// alias along it. Of all values, 0.4 has nearly the least RMSE against a box pixel on the planes of
+/// `texrender frontier`, for 1 to 16 probes and for every texture there; the error is flat from 0.3 to 0.6.
+const CUT_SHARPENING: f32 = 0.4;
+
+/// What λ is lowered by: in proportion to the octaves of aspect that are cut, up to one.
+fn sharpening(axes: &AxisLengths, eta: f32, rule: LodRule) -> f32 {
+    match rule {
+        LodRule::Exact => {
+            let cut = axes.anisotropy() / eta;
+            CUT_SHARPENING * libm::log2f(cut).clamp(0.0, 1.0)
+        }
+        LodRule::MaxLength => 0.0,
+    }
 }
 
 #[inline]

@@ -5,7 +5,7 @@
 //! stored codes change sides: half a code below the least code that is drawn.
 
 use half::f16;
-use sampler::{Component, Texture};
+use sampler::{AlphaMode, Component, Format, Texture};
 
 /// Where alpha changes sides, once stored.
 #[derive(Debug, Clone, Copy)]
@@ -78,20 +78,16 @@ impl Cutoff {
         drawn as f64 / (f64::from(size.x) * f64::from(size.y))
     }
 
-    /// Scales the last channel so that `share` of the texels is drawn; premultiplied colour with it.
+    /// Scales the last channel so that `share` of the texels, in rows of `width`, is drawn; premultiplied colour with
+    /// it.
     #[allow(
         clippy::cast_possible_truncation,
         clippy::cast_sign_loss,
         reason = "a share in 0..=1 of a number of texels"
     )]
-    pub(super) fn keep(
-        &self,
-        share: f64,
-        width: usize,
-        channels: usize,
-        premultiplied: bool,
-        linear: &mut [f32],
-    ) {
+    pub(super) fn keep(&self, share: f64, width: usize, format: Format, linear: &mut [f32]) {
+        let channels = usize::from(format.channels);
+        let premultiplied = format.alpha == AlphaMode::Premultiplied;
         // NaN is never drawn.
         let alphas: Vec<f32> = linear
             .chunks_exact(channels)

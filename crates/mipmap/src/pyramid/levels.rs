@@ -1,5 +1,5 @@
 use glam::UVec2;
-use sampler::{AlphaMode, Component, Texture};
+use sampler::{Component, Texture};
 
 use super::box_filter::{self, Arithmetic, Averaging, Method, halved};
 use super::content::{Content, EnvironmentChart};
@@ -99,7 +99,7 @@ pub(super) fn most_levels(size: UVec2) -> u32 {
 /// How one texture is reduced: all that follows from its format, its content and the options.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Reduction {
-    texture: sampler::Format,
+    format: sampler::Format,
     content: Content,
     options: PyramidOptions,
     method: Method,
@@ -128,7 +128,7 @@ impl Reduction {
         }
         let method = method(format, content, chart);
         let reduction = Self {
-            texture: format,
+            format,
             content,
             options: *options,
             method,
@@ -190,16 +190,9 @@ impl Reduction {
             }
         }
         if let Some((cutoff, share)) = self.coverage {
-            let premultiplied = self.texture.alpha == AlphaMode::Premultiplied;
-            cutoff.keep(
-                share,
-                size.x as usize,
-                channels,
-                premultiplied,
-                linear.to_mut(),
-            );
+            cutoff.keep(share, size.x as usize, self.format, linear.to_mut());
         }
-        self.options.schedule.store(size, self.texture, &linear)
+        self.options.schedule.store(size, self.format, &linear)
     }
 
     fn reduce_rows(
@@ -239,8 +232,11 @@ impl Reduction {
         if let Content::Roughness { channel } = self.content {
             for texel in row.chunks_exact_mut(self.method.channels) {
                 let value = &mut texel[usize::from(channel)];
-                // NaN.max(0) is 0.
-                let r = value.max(0.0).min(1.0);
+                let r = if value.is_nan() {
+                    0.0
+                } else {
+                    value.clamp(0.0, 1.0)
+                };
                 *value = (r * r) * (r * r);
             }
         }

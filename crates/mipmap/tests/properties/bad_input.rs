@@ -85,7 +85,7 @@ fn levels_are_as_many_as_asked_for_or_refused() {
 
 #[test]
 fn levels_on_demand_are_those_of_the_pyramid() {
-    let texture = crate::content::foliage(UVec2::new(61, 47), 2.0);
+    let texture = crate::coverage::foliage(UVec2::new(61, 47), 2.0);
     let content = Content::AlphaTested { cutoff: 0.5 };
     let pyramid = Pyramid::build(texture.clone(), content).unwrap();
     let mut levels = Levels::new(&texture, content, &PyramidOptions::default()).unwrap();

@@ -279,7 +279,7 @@ fn wide_kernels_are_sharper_and_alias_less_than_the_box() {
 #[test]
 fn a_parallel_build_gives_the_same_bits() {
     use mipmap::pyramid::{EnvironmentChart, Schedule};
-    let texture = crate::content::foliage(UVec2::new(301, 203), 2.0);
+    let texture = crate::coverage::foliage(UVec2::new(301, 203), 2.0);
     let environment = Content::Environment(EnvironmentChart::LatLong);
     let contents = [
         Content::Colour,

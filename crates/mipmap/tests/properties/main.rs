@@ -8,6 +8,7 @@ mod anisotropic;
 mod automatic;
 mod bad_input;
 mod content;
+mod coverage;
 mod ewa;
 mod filtering;
 mod footprint;

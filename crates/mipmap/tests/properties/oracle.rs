@@ -107,9 +107,9 @@ pub(crate) fn anisotropic(pyramid: &Pyramid, state: &SamplerState, footprint: &F
     }
     let eta = (major / minor)
         .min(f64::from(state.max_anisotropy))
-        .min(major.max(1.0))
+        .min((4.0 * major - 1.0).max(1.0))
         .max(1.0);
-    let lod = (major / eta).log2();
+    let lod = (major / eta).log2() - 0.4 * (major / minor / eta).log2().clamp(0.0, 1.0);
     let axis = major_axis(pyramid.size(), footprint, major, minor);
     // Boundaries of cells: half-integers inside ±η/2, and the ends.
     let mut sum = DVec4::ZERO;

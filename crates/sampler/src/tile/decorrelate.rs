@@ -86,15 +86,14 @@ fn principal_axes(mut matrix: [[f64; 3]; 3], mut axes: [[f64; 3]; 3]) -> [[f64; 
         let tangent = tau.signum() / (tau.abs() + (1.0 + tau * tau).sqrt());
         let cos = 1.0 / (1.0 + tangent * tangent).sqrt();
         let sin = tangent * cos;
+        let turned = |a: f64, b: f64| (cos * a - sin * b, sin * a + cos * b);
         for row in &mut matrix {
-            (row[p], row[q]) = (cos * row[p] - sin * row[q], sin * row[p] + cos * row[q]);
+            (row[p], row[q]) = turned(row[p], row[q]);
         }
         for rows in [&mut matrix, &mut axes] {
-            for k in 0..3 {
-                (rows[p][k], rows[q][k]) = (
-                    cos * rows[p][k] - sin * rows[q][k],
-                    sin * rows[p][k] + cos * rows[q][k],
-                );
+            let (above, below) = rows.split_at_mut(q);
+            for (a, b) in above[p].iter_mut().zip(&mut below[0]) {
+                (*a, *b) = turned(*a, *b);
             }
         }
     }

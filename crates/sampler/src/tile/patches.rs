@@ -2,6 +2,7 @@ use glam::UVec2;
 
 use super::decorrelate::Basis;
 use super::gaussian::{Quantiles, gaussianised, round_to_f32};
+use super::seam::{Seam, seam};
 use crate::error::Error;
 use crate::texture::Texture;
 
@@ -21,7 +22,8 @@ pub struct TileOptions {
 /// [`crate::tile`], with what the two patches share taken into account: for weights w and 1 − w and patches of
 /// correlation ρ the blend is divided by √(w² + (1−w)² + 2ρw(1−w)).
 ///
-/// An axis of one texel repeats as it is. Alpha is one more channel.
+/// An axis along which the wrap steps no more than some two lines inside ([`super::SeamStep::shows`]) repeats as it is.
+/// Alpha is one more channel.
 ///
 /// # Errors
 /// [`Error::Overlap`] for an overlap of 0 or over half a side (of more than one texel), [`Error::NotFinite`] for a
@@ -37,7 +39,7 @@ pub struct TileOptions {
 /// use glam::UVec2;
 /// use sampler::tile::{TileOptions, make_tileable, seam};
 /// use sampler::{Texels, Texture, Transfer};
-/// let codes = (0..64u32 * 64).map(|k| (k % 64 * 3 + k * 2_654_435_761 % 40) as u8).collect();
+/// let codes = (0..64u32 * 64).map(|k| (k % 64 * 3 + k * 7919 % 40) as u8).collect();
 /// let slope = Texture::new(UVec2::splat(64), 1, Transfer::Srgb, Texels::U8(codes))?;
 /// assert!(seam(&slope).s.ratio() > 5.0);
 /// assert!(seam(&make_tileable(&slope, TileOptions::default())?).s.ratio() < 1.5);
@@ -71,6 +73,7 @@ pub(super) struct Planes {
     ranges: Vec<[f32; 2]>,
     /// Which texels are no longer the texture's.
     changed: Vec<bool>,
+    seam: Seam,
 }
 
 impl Planes {
@@ -100,24 +103,20 @@ impl Planes {
             quantiles,
             ranges,
             changed: vec![false; linear.len() / channels],
+            seam: seam(texture),
         })
     }
 
-    /// Blends bands along the borders into the middle, along s and then along t.
+    /// Blends bands along the borders into the middle, along s and then along t, where the wrap shows.
     pub(super) fn blend_borders(&mut self, options: TileOptions) -> Result<(), Error> {
-        let bands = [self.size.x, self.size.y].map(|side| match options.overlap {
-            _ if side == 1 => Ok(0),
-            None => Ok((side / 4).max(1)),
-            Some(overlap) if overlap == 0 || overlap > side / 2 => Err(Error::Overlap {
-                overlap,
-                most: side / 2,
-            }),
-            Some(overlap) => Ok(overlap),
-        });
         let [width, height] = [self.size.x as usize, self.size.y as usize];
-        let [band_s, band_t] = bands;
-        self.blend_axis(width, band_s?, height, |i, j| j * width + i);
-        self.blend_axis(height, band_t?, width, |j, i| j * width + i);
+        let [band_s, band_t] = [band(self.size.x, options)?, band(self.size.y, options)?];
+        if self.seam.s.shows() {
+            self.blend_axis(width, band_s, height, |i, j| j * width + i);
+        }
+        if self.seam.t.shows() {
+            self.blend_axis(height, band_t, width, |j, i| j * width + i);
+        }
         Ok(())
     }
 
@@ -125,11 +124,10 @@ impl Planes {
     fn blend_axis(
         &mut self,
         length: usize,
-        band: u32,
+        band: usize,
         lines: usize,
         index: impl Fn(usize, usize) -> usize,
     ) {
-        let band = band as usize;
         let ends = || (0..band).chain(length - band..length);
         let shifted = |place: usize| (place + length / 2) % length;
         for plane in &mut self.variates {
@@ -188,6 +186,17 @@ impl Planes {
             *out = round_to_f32(value).max(range[0]).min(range[1]);
         }
         out
+    }
+}
+
+/// Texels from each end of a side that are blended.
+fn band(side: u32, options: TileOptions) -> Result<usize, Error> {
+    let most = side / 2;
+    match options.overlap {
+        _ if side == 1 => Ok(0),
+        None => Ok((side as usize / 4).max(1)),
+        Some(overlap) if overlap == 0 || overlap > most => Err(Error::Overlap { overlap, most }),
+        Some(overlap) => Ok(overlap as usize),
     }
 }
 

@@ -17,6 +17,8 @@ pub struct SeamStep {
     pub across: f64,
     /// Between neighbours inside.
     pub within: f64,
+    /// Between two neighbouring columns or rows inside, the greatest of all.
+    pub greatest: f64,
 }
 
 impl SeamStep {
@@ -28,6 +30,33 @@ impl SeamStep {
             1.0
         } else {
             self.across / self.within
+        }
+    }
+
+    /// Whether the wrap steps more than any two lines inside do: texture that repeats has lines that step more than
+    /// the rest, and the wrap may be one of them.
+    pub fn shows(self) -> bool {
+        self.across > self.greatest
+    }
+}
+
+/// What steps along one axis sum up to.
+#[derive(Debug, Clone)]
+struct Squares {
+    /// Between each line and the next, the last one's across the wrap.
+    lines: Vec<f64>,
+    /// Steps in a line.
+    count: usize,
+}
+
+impl Squares {
+    fn step(&self) -> SeamStep {
+        let root_mean = |sum: f64, lines: usize| (sum / (lines.max(1) * self.count) as f64).sqrt();
+        let (across, inside) = self.lines.split_last().expect("a texture has texels");
+        SeamStep {
+            across: root_mean(*across, 1),
+            within: root_mean(inside.iter().sum(), inside.len()),
+            greatest: root_mean(inside.iter().copied().fold(0.0, f64::max), 1),
         }
     }
 }
@@ -73,36 +102,23 @@ fn steps(width: usize, height: usize, channels: usize, value: impl Fn(usize) -> 
             })
             .sum()
     };
-    let root_mean = |sum: f64, pairs: usize| {
-        if pairs == 0 {
-            0.0
-        } else {
-            (sum / (pairs * channels) as f64).sqrt()
+    let mut columns = vec![0.0; width];
+    let mut rows = vec![0.0; height];
+    for (j, row) in rows.iter_mut().enumerate() {
+        for (i, column) in columns.iter_mut().enumerate() {
+            *column += square(texel(i, j), texel((i + 1) % width, j));
+            *row += square(texel(i, j), texel(i, (j + 1) % height));
         }
-    };
-    let (mut across_s, mut within_s, mut within_t) = (0.0, 0.0, 0.0);
-    for j in 0..height {
-        for i in 0..width {
-            if i + 1 < width {
-                within_s += square(texel(i, j), texel(i + 1, j));
-            }
-            if j + 1 < height {
-                within_t += square(texel(i, j), texel(i, j + 1));
-            }
-        }
-        across_s += square(texel(width - 1, j), texel(0, j));
     }
-    let across_t = (0..width)
-        .map(|i| square(texel(i, height - 1), texel(i, 0)))
-        .sum();
+    let along = |lines: Vec<f64>, other: usize| {
+        Squares {
+            lines,
+            count: other * channels,
+        }
+        .step()
+    };
     Seam {
-        s: SeamStep {
-            across: root_mean(across_s, height),
-            within: root_mean(within_s, (width - 1) * height),
-        },
-        t: SeamStep {
-            across: root_mean(across_t, width),
-            within: root_mean(within_t, (height - 1) * width),
-        },
+        s: along(columns, height),
+        t: along(rows, width),
     }
 }

@@ -90,14 +90,20 @@ fn room(picture: &Texture, tiles: (u32, u32), setting: &'static str) -> Result<U
 fn print_seam(path: &Path, seam: Seam) {
     let said = |step: SeamStep| {
         format!(
-            "{:.2} ({:.4} across, {:.4} inside)",
+            "{} {:.2} ({:.4} across, {:.4} inside, {:.4} at most)",
+            if step.shows() {
+                "shows"
+            } else {
+                "does not show"
+            },
             step.ratio(),
             step.across,
-            step.within
+            step.within,
+            step.greatest
         )
     };
     println!(
-        "{}: seam in s {}, in t {}",
+        "{}: seam in s {}; in t {}",
         path.display(),
         said(seam.s),
         said(seam.t)
