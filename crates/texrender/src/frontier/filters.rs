@@ -171,7 +171,6 @@ fn probe_lines(pyramid: &Pyramid) -> Vec<FilterSetting<'_>> {
     let mut all: Vec<_> = [2, 4, 8, 16, 32, 64]
         .map(|n| line(n, "exact", PixelKernel::Axes, |state| state))
         .into();
-    all.extend([2, 4, 8, 16].map(|n| line(n, "bias-0.5", PixelKernel::Axes, biased)));
     all.extend([4, 16].map(|n| line(n, "fixed", PixelKernel::Axes, fixed)));
     all.push(line(16, "max-length", PixelKernel::Axes, max_length));
     all.extend([4, 16].map(|n| line(n, "gaussian", PixelKernel::Ellipse, gaussian)));
@@ -243,13 +242,6 @@ fn stochastic_means(pyramid: &Pyramid) -> Vec<FilterSetting<'_>> {
 fn fixed(state: SamplerState) -> SamplerState {
     SamplerState {
         precision: Precision::Fixed,
-        ..state
-    }
-}
-
-fn biased(state: SamplerState) -> SamplerState {
-    SamplerState {
-        lod_bias: -0.5,
         ..state
     }
 }
