@@ -51,6 +51,10 @@ impl Texture {
     /// assert_eq!(texture.to_image().as_luma_alpha8().map(|picture| picture.as_raw().as_slice()), Some(&[7, 9][..]));
     /// # Ok::<(), sampler::Error>(())
     /// ```
+    #[allow(
+        clippy::missing_panics_doc,
+        reason = "a texture always has as many components as its size says"
+    )]
     pub fn to_image(&self) -> DynamicImage {
         let UVec2 { x, y } = self.size();
         let made = match (self.texels(), self.channels()) {
