@@ -35,8 +35,15 @@
 //!
 //! # Filters: [`SamplerState`], [`sample`]
 //! glTF's six minification filters and two magnification filters, trilinear, and a line of probes along the major
-//! axis for footprints up to 16 times (by default) as long as wide. Isotropic modes use the exact major axis. The
-//! target pixel kernel of the probe line is a box along the major axis; across it, the tent of the trilinear lookup.
+//! axis for footprints up to 16 times (by default) as long as wide, with bias and limits of the level. The target
+//! pixel kernel of the probe line is a box along the major axis; across it, the tent of the trilinear lookup;
+//! [`ProbeWeights::Gaussian`] makes it a Gaussian. [`stochastic`] reads one texel of the same, right on average.
+//!
+//! # A Gaussian pixel: [`ewa`]
+//! Every texel under the footprint's ellipse, weighted by a Gaussian, in three tiers ([`EwaTier`]).
+//!
+//! # By tolerance: [`automatic`]
+//! The cheapest of these whose error against a box pixel is below what the caller accepts ([`Tolerance`]).
 //!
 //! # Boxes along the axes: [`RipMap`], [`SummedArea`]
 //! Two other tables of one texture: levels halved along s and t independently, and the sums of all rectangles. Both
@@ -57,6 +64,10 @@
 //! | mean by a wide kernel | [`pyramid::WIDE_KERNEL_MEAN_ERROR`] | `tests/properties/kernels.rs` |
 //! | stored components | nearest code | `tests/properties/pyramid.rs` |
 //! | [`sample`] against its f64 kernel | 1e-5 of the texels' range | `tests/properties/anisotropic.rs` |
+//! | [`ewa`] against a Gaussian pixel, RMSE on checkerboards | [`EwaTier`]: 0.010, 0.005, 0.004 | `tests/properties/ewa.rs` |
+//! | [`automatic`], RMSE on checkerboards | its [`Tolerance`] | `tests/properties/automatic.rs` |
+//! | [`stochastic`] | unbiased | `tests/properties/stochastic.rs` |
+//! | trilinear lookups | one of those that ±8e-6 of λ can give | `tests/properties/verifier.rs` |
 //! | [`RipMap`] against its f64 kernel | 1e-5 of the texels' range | `tests/properties/rip_map.rs` |
 //! | [`SummedArea`] against the integral | 1e-6 of the texels' range | `tests/properties/summed_area.rs` |
 //! | continuity over derivatives | ≤ 1/255 per 1e-3 step | `tests/properties/filtering.rs` |
@@ -68,7 +79,8 @@
 //! # Sources
 //! Williams 1983, "Pyramidal Parametrics"; Heckbert 1989, "Fundamentals of Texture Mapping and Image Warping";
 //! McCormack et al. 1999, "Feline"; Castaño 2010, "Computing Alpha Mipmaps"; Crow 1984, "Summed-Area Tables for
-//! Texture Mapping"; Vulkan 1.3, "Image Operations".
+//! Texture Mapping"; Greene and Heckbert 1986 (the elliptical average); Fajardo et al. 2023, "Stochastic Texture
+//! Filtering"; Vulkan 1.3, "Image Operations".
 #![forbid(unsafe_code)]
 
 mod automatic;
