@@ -1,6 +1,7 @@
 //! Footprint → level of detail → filtered colour, against a supersampled reference in f64.
 
 use glam::{DVec2, DVec3, Vec3};
+use mipmap::{EwaTier, Tolerance};
 use serde_json::json;
 use texrender::{FilterChoice, Settings, View};
 
@@ -134,6 +135,16 @@ fn each_better_filter_comes_closer_to_the_box_pixel() {
         "RMSE: nearest {nearest:.4}, trilinear {trilinear:.4}, aniso 4 {aniso4:.4}, aniso 16 {aniso16:.4}"
     );
     assert!(aniso16 <= 0.02, "{aniso16}");
+    // By tolerance: within it, whatever it takes. The Gaussian pixel is another target.
+    for tolerance in [0.05, 0.0105] {
+        let automatic = rmse(FilterChoice::Automatic(Tolerance::new(tolerance).unwrap()));
+        assert!(
+            automatic <= f64::from(tolerance),
+            "{tolerance}: {automatic}"
+        );
+    }
+    let elliptic = rmse(FilterChoice::Elliptic(EwaTier::Standard));
+    assert!(elliptic < 0.6 * nearest, "{elliptic}");
     assert!(aniso16 <= aniso4 && aniso4 < 0.6 * trilinear && trilinear < 0.6 * nearest);
 }
 

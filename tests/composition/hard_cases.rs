@@ -1,6 +1,7 @@
 //! The catalogue's hard cases, end to end: no panic, no NaN, the right pixels.
 
 use glam::{DVec3, UVec2, Vec3};
+use mipmap::{EwaTier, Tolerance};
 use serde_json::json;
 use texrender::{Background, Film, FilterChoice, Settings, View};
 
@@ -258,6 +259,8 @@ fn huge_negative_and_non_finite_texture_coordinates() {
             FilterChoice::Nearest,
             FilterChoice::Bilinear,
             FilterChoice::Anisotropic(16.0),
+            FilterChoice::Elliptic(EwaTier::Best),
+            FilterChoice::Automatic(Tolerance::LEAST),
         ] {
             for size in [(1, 1), (1, 7), (5, 3), (16, 16)] {
                 let glb = textured(

@@ -1,5 +1,6 @@
 //! Only what the scene needs is decoded, built or evaluated.
 
+use mipmap::{EwaTier, Tolerance};
 use serde_json::json;
 use texrender::plan::TextureRole;
 use texrender::{EnvironmentSource, FilterChoice, Settings};
@@ -92,6 +93,8 @@ fn pyramids_are_built_only_for_filters_that_use_them() {
         (FilterChoice::Bilinear, 0),
         (FilterChoice::Trilinear, 3),
         (FilterChoice::Anisotropic(16.0), 3),
+        (FilterChoice::Elliptic(EwaTier::Fast), 3),
+        (FilterChoice::Automatic(Tolerance::LEAST), 3),
         (FilterChoice::File, 3),
     ] {
         let settings = Settings {

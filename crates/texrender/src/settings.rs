@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use glam::{DVec3, Vec3};
+use mipmap::{EwaTier, Tolerance};
 
 use crate::error::Error;
 
@@ -141,6 +142,12 @@ pub enum FilterChoice {
     /// Trilinear along the footprint, up to this ratio of its axes. A texture whose author asks for
     /// nearest magnification keeps it.
     Anisotropic(f32),
+    /// The elliptical weighted average, for a Gaussian pixel: softer and steadier than probes, several times as
+    /// slow. A texture whose author asks for nearest magnification is filtered as by `Anisotropic(16)`.
+    Elliptic(EwaTier),
+    /// The cheapest filter whose RMSE against a box pixel is below this, as [`mipmap::automatic`] chooses it. A
+    /// texture whose author asks for nearest magnification is filtered as by `Anisotropic(16)`.
+    Automatic(Tolerance),
     /// As the author asks.
     File,
 }

@@ -1,7 +1,7 @@
 //! The smallest kernel that serves a surface.
 
 use glam::{Vec3, Vec4};
-use mipmap::{MipFilter, SamplerState};
+use mipmap::{EwaTier, MipFilter, SamplerState, Tolerance};
 use sampler::Filter;
 use texcoord::AffineTransform;
 
@@ -131,10 +131,23 @@ pub struct Map {
     pub texture: usize,
     /// Address modes and filters.
     pub sampler: SamplerState,
+    /// Whether another filter than the sampler's reads the pyramid.
+    pub reading: MapReading,
     /// Set of texture coordinates.
     pub texcoord: usize,
     /// Applied to the coordinates; `None` for the identity.
     pub transform: Option<AffineTransform>,
+}
+
+/// Which of `mipmap`'s filters reads a map.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum MapReading {
+    /// [`mipmap::sample`], as the sampler says.
+    Sampler,
+    /// [`mipmap::ewa`], with the sampler's address modes.
+    Elliptic(EwaTier),
+    /// [`mipmap::automatic`], with the sampler but for its anisotropy.
+    Automatic(Tolerance),
 }
 
 impl Kernel {
@@ -337,6 +350,7 @@ impl<'a> KernelBuilder<'a> {
                 pyramid,
                 reason,
             ),
+            reading: chosen_reading(self.plan.settings.filter, &sampler),
             sampler,
             texcoord: source.texcoord,
             transform: (!source.transform.is_identity()).then(|| source.transform.affine()),
@@ -374,5 +388,19 @@ fn chosen_filter(choice: FilterChoice, authored: SamplerState) -> SamplerState {
         FilterChoice::Bilinear => with(linear, linear, MipFilter::None, 1.0),
         FilterChoice::Trilinear => with(linear, linear, MipFilter::Linear, 1.0),
         FilterChoice::Anisotropic(n) => with(authored.magnify, linear, MipFilter::Linear, n),
+        FilterChoice::Elliptic(_) | FilterChoice::Automatic(_) => {
+            with(authored.magnify, linear, MipFilter::Linear, 16.0)
+        }
+    }
+}
+
+/// `sampler`: as [`chosen_filter`] gives it.
+fn chosen_reading(choice: FilterChoice, sampler: &SamplerState) -> MapReading {
+    match choice {
+        // Pixel art keeps its edges.
+        _ if sampler.magnify == Filter::Nearest => MapReading::Sampler,
+        FilterChoice::Elliptic(tier) => MapReading::Elliptic(tier),
+        FilterChoice::Automatic(tolerance) => MapReading::Automatic(tolerance),
+        _ => MapReading::Sampler,
     }
 }

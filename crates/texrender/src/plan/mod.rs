@@ -20,7 +20,8 @@ use crate::settings::Settings;
 pub use describe::scene_summary;
 pub use environment::EnvironmentNeed;
 pub use kernel::{
-    Coverage, Curvature, Kernel, Lighting, LitKernel, Map, Reflectance, Sidedness, TangentSource,
+    Coverage, Curvature, Kernel, Lighting, LitKernel, Map, MapReading, Reflectance, Sidedness,
+    TangentSource,
 };
 pub use texture::{PyramidNeed, TextureNeed, TextureRole};
 pub use view::Viewpoint;

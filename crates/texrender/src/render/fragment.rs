@@ -1,12 +1,14 @@
 //! What the vertices say at a point of an element.
 
 use glam::{DVec3, Mat3, Vec2, Vec3, Vec4};
-use mipmap::Footprint;
+use mipmap::{Footprint, LodRule, Pyramid};
 use raster::Facing;
 use sampler::unpremultiply;
 use texcoord::{ScreenCoordinate, Weights};
 
-use crate::plan::{Draw, Kernel, Lighting, Map, Plan, TangentSource, TextureRole, Winding};
+use crate::plan::{
+    Draw, Kernel, Lighting, Map, MapReading, Plan, TangentSource, TextureRole, Winding,
+};
 use crate::prepare::Resources;
 use crate::scene::{Primitive, Scene, Topology};
 use normalmap::{TangentFrame, curvature_variance, decode_normal, filtered_variance};
@@ -147,7 +149,7 @@ impl<'a> Fragment<'a> {
             dst_dy: at.dst_dy,
         };
         let pyramid = &self.resources.textures[map.texture];
-        let (texel, lod) = mipmap::sample_with_lod(pyramid, &map.sampler, &footprint);
+        let (texel, lod) = read(pyramid, map, &footprint);
         match self.plan.textures[map.texture].role {
             TextureRole::ColourWithAlpha | TextureRole::AlphaTested { .. } => {
                 (unpremultiply(texel), lod)
@@ -270,6 +272,27 @@ impl<'a> Fragment<'a> {
                 frame.turned(transform.matrix.matrix2.as_mat2())
             }
             _ => frame,
+        }
+    }
+}
+
+/// Colour of a map under a footprint by the filter that was chosen for it, and its level of detail; of filters that
+/// read several levels at once, that of the footprint's longer axis.
+fn read(pyramid: &Pyramid, map: &Map, footprint: &Footprint) -> (Vec4, f32) {
+    let longer = || {
+        let last = (pyramid.levels() - 1) as f32;
+        let Footprint { dst_dx, dst_dy, .. } = *footprint;
+        mipmap::lod(pyramid.size(), dst_dx, dst_dy, LodRule::Exact).clamp(0.0, last)
+    };
+    match map.reading {
+        MapReading::Sampler => mipmap::sample_with_lod(pyramid, &map.sampler, footprint),
+        MapReading::Elliptic(tier) => {
+            let texel = mipmap::ewa(pyramid, map.sampler.address, tier, footprint);
+            (texel, longer())
+        }
+        MapReading::Automatic(tolerance) => {
+            let texel = mipmap::automatic(pyramid, &map.sampler, tolerance, footprint);
+            (texel, longer())
         }
     }
 }

@@ -163,7 +163,7 @@ pub(crate) struct PictureArgs {
     #[arg(long, value_name = "COLOR|transparent|env", default_value = "#333333", value_parser = values::background)]
     pub background: Background,
     /// How textures are filtered.
-    #[arg(long, value_name = "nearest|bilinear|trilinear|aniso[:N]|file", default_value = "aniso:16",
+    #[arg(long, value_name = "nearest|bilinear|trilinear|aniso[:N]|ewa[:fast|:best]|auto:RMSE|file", default_value = "aniso:16",
           value_parser = values::filter)]
     pub filter: FilterChoice,
     /// Coverage samples a pixel: 1, 2, 4, 8, 16, 32 or 64.

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use glam::{DVec3, Vec3};
+use texrender::mipmap::{EwaTier, Tolerance};
 use texrender::sampler::transfer::srgb_to_linear;
 use texrender::{Aov, Background, BitDepth, EnvironmentSource, FilterChoice, ToneMap};
 
@@ -131,16 +132,23 @@ pub(crate) fn filter(text: &str) -> Result<FilterChoice, String> {
         "trilinear" => return Ok(FilterChoice::Trilinear),
         "aniso" => return Ok(FilterChoice::Anisotropic(16.0)),
         "file" => return Ok(FilterChoice::File),
+        "ewa" | "ewa:standard" => return Ok(FilterChoice::Elliptic(EwaTier::Standard)),
+        "ewa:fast" => return Ok(FilterChoice::Elliptic(EwaTier::Fast)),
+        "ewa:best" => return Ok(FilterChoice::Elliptic(EwaTier::Best)),
         _ => {}
     }
-    text.strip_prefix("aniso:")
-        .and_then(|n| n.parse().ok())
-        .filter(|n: &f32| (1.0..=64.0).contains(n))
-        .map(FilterChoice::Anisotropic)
-        .ok_or_else(|| {
-            "choose nearest, bilinear, trilinear, aniso, aniso:N (N from 1 to 64) or file"
-                .to_owned()
-        })
+    let number = |prefix| text.strip_prefix(prefix)?.parse::<f32>().ok();
+    let anisotropic = number("aniso:")
+        .filter(|n| (1.0..=64.0).contains(n))
+        .map(FilterChoice::Anisotropic);
+    let automatic = number("auto:")
+        .and_then(|rmse| Tolerance::new(rmse).ok())
+        .map(FilterChoice::Automatic);
+    anisotropic.or(automatic).ok_or_else(|| {
+        "choose nearest, bilinear, trilinear, aniso, aniso:N (N from 1 to 64), ewa, ewa:fast, ewa:best, \
+         auto:RMSE (an error above 0) or file"
+            .to_owned()
+    })
 }
 
 /// A size with an optional unit: bytes, or K, M, G with or without iB.
