@@ -58,6 +58,9 @@
 //! | sRGB decode, 8 and 16 bit | nearest f32 | `tests/properties/transfer.rs` |
 //! | sRGB encode, 8 bit | exactly rounded for all 2³² inputs | `tests/properties/transfer.rs` |
 //!
+//! The suite strides over the encoder's inputs; `cargo test --release -p texrender-sampler -- --ignored` checks all
+//! 2³², in a few minutes.
+//!
 //! # Limits
 //! An f32 coordinate is spaced 2⁻²⁴·2ᵏ around 2ᵏ: on a 4096 texture it stops resolving 1/256 texel beyond 16
 //! repeats. Widen to f64 where the coordinate is computed, not here.

@@ -1,14 +1,13 @@
 //! The smallest kernel that serves a surface.
 
 use glam::{Vec3, Vec4};
-use mipmap::{EwaTier, MipFilter, SamplerState, Tolerance};
-use sampler::Filter;
+use mipmap::{MipFilter, SamplerState};
 use texcoord::AffineTransform;
 
+use super::filter::{MapReading, chosen_filter, chosen_reading};
 use super::texture::{PyramidNeed, TextureNeed, TextureRole};
 use super::{Plan, TangentNeed};
 use crate::scene::{AlphaMode, Material, MaterialModel, Primitive, Scene, TextureUse, Topology};
-use crate::settings::FilterChoice;
 
 /// How the surface of a primitive is shaded: its factors, and the maps that change them.
 #[derive(Clone, Debug)]
@@ -137,17 +136,6 @@ pub struct Map {
     pub texcoord: usize,
     /// Applied to the coordinates; `None` for the identity.
     pub transform: Option<AffineTransform>,
-}
-
-/// Which of `mipmap`'s filters reads a map.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum MapReading {
-    /// [`mipmap::sample`], as the sampler says.
-    Sampler,
-    /// [`mipmap::ewa`], with the sampler's address modes.
-    Elliptic(EwaTier),
-    /// [`mipmap::automatic`], with the sampler but for its anisotropy.
-    Automatic(Tolerance),
 }
 
 impl Kernel {
@@ -369,38 +357,5 @@ fn color_role(coverage: Coverage, factor: f32) -> TextureRole {
             }
         }
         Coverage::Mask { .. } | Coverage::Blend => TextureRole::ColourWithAlpha,
-    }
-}
-
-/// The author's sampler with the user's filter.
-fn chosen_filter(choice: FilterChoice, authored: SamplerState) -> SamplerState {
-    let with = |magnify, minify, mip, max_anisotropy| SamplerState {
-        magnify,
-        minify,
-        mip,
-        max_anisotropy,
-        ..authored
-    };
-    let linear = Filter::Bilinear;
-    match choice {
-        FilterChoice::File => authored,
-        FilterChoice::Nearest => with(Filter::Nearest, Filter::Nearest, MipFilter::None, 1.0),
-        FilterChoice::Bilinear => with(linear, linear, MipFilter::None, 1.0),
-        FilterChoice::Trilinear => with(linear, linear, MipFilter::Linear, 1.0),
-        FilterChoice::Anisotropic(n) => with(authored.magnify, linear, MipFilter::Linear, n),
-        FilterChoice::Elliptic(_) | FilterChoice::Automatic(_) => {
-            with(authored.magnify, linear, MipFilter::Linear, 16.0)
-        }
-    }
-}
-
-/// `sampler`: as [`chosen_filter`] gives it.
-fn chosen_reading(choice: FilterChoice, sampler: &SamplerState) -> MapReading {
-    match choice {
-        // Pixel art keeps its edges.
-        _ if sampler.magnify == Filter::Nearest => MapReading::Sampler,
-        FilterChoice::Elliptic(tier) => MapReading::Elliptic(tier),
-        FilterChoice::Automatic(tolerance) => MapReading::Automatic(tolerance),
-        _ => MapReading::Sampler,
     }
 }

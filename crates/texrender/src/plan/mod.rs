@@ -6,6 +6,7 @@
 
 mod describe;
 mod environment;
+mod filter;
 mod kernel;
 mod texture;
 mod view;
@@ -19,9 +20,9 @@ use crate::scene::{Scene, Topology};
 use crate::settings::Settings;
 pub use describe::scene_summary;
 pub use environment::EnvironmentNeed;
+pub use filter::MapReading;
 pub use kernel::{
-    Coverage, Curvature, Kernel, Lighting, LitKernel, Map, MapReading, Reflectance, Sidedness,
-    TangentSource,
+    Coverage, Curvature, Kernel, Lighting, LitKernel, Map, Reflectance, Sidedness, TangentSource,
 };
 pub use texture::{PyramidNeed, TextureNeed, TextureRole};
 pub use view::Viewpoint;
