@@ -195,3 +195,101 @@ fn every_wrap_border_blends_the_texels_that_meet_there() {
     assert_eq!(at(AddressMode::ClampToEdge, 1.0), 9.0);
     assert_eq!(at(AddressMode::ClampToBorder, 1.0), 4.5);
 }
+
+/// A4: the largest half beside 0, and the least numbers that f32 and f16 hold: no infinity, nothing flushed to 0.
+#[test]
+fn a4_halves_and_denormals_keep_their_envelope() {
+    let halves = [0.0, 65504.0, 0.0, 65504.0].map(half::f16::from_f32);
+    let texture = made(
+        UVec2::new(4, 1),
+        1,
+        Transfer::Linear,
+        Texels::F16(halves.to_vec()),
+    );
+    let modes = [AddressMode::Repeat; 2];
+    for k in 0..256 {
+        let value = bilinear(&texture, modes, DVec2::new(f64::from(k) / 256.0, 0.5)).x;
+        assert!((0.0..=65504.0).contains(&value), "{value}");
+    }
+    assert_eq!(bilinear(&texture, modes, DVec2::new(0.25, 0.5)).x, 32752.0);
+    let least = half::f16::from_bits(1);
+    let texture = made(
+        UVec2::new(2, 1),
+        1,
+        Transfer::Linear,
+        Texels::F16(vec![least; 2]),
+    );
+    assert_eq!(
+        bilinear(&texture, modes, DVec2::new(0.3, 0.5)).x,
+        least.to_f32()
+    );
+    let denormal = f32::from_bits(3);
+    let texture = row(&[denormal, f32::from_bits(5)]);
+    assert_eq!(
+        bilinear(&texture, modes, DVec2::new(0.5, 0.5)).x,
+        f32::from_bits(4)
+    );
+}
+
+/// A1: the same texel as the exact product at every listed coordinate, under every mode.
+#[test]
+fn a1_the_listed_coordinates_read_the_texel_of_the_exact_product() {
+    let listed = [
+        -1e-9,
+        -(2f64.powi(-25)),
+        -(2f64.powi(-24)),
+        -0.0,
+        1.0 - 2f64.powi(-24),
+        1.0,
+        2.0,
+        -3.0,
+        7.0,
+    ];
+    for size in [1u32, 3, 5, 8] {
+        let texture = row(&(0..size).map(|i| i as f32 + 1.0).collect::<Vec<_>>());
+        for mode in MODES {
+            for s in listed {
+                let got = nearest(&texture, [mode, AddressMode::Repeat], DVec2::new(s, 0.5)).x;
+                let index = oracle::exact_texel(s, size);
+                let expected =
+                    oracle::wrapped(mode, index, i64::from(size)).map_or(0.0, |i| i as f32 + 1.0);
+                assert_eq!(got, expected, "{s} of {size}, {mode:?}");
+            }
+        }
+    }
+}
+
+/// A2: the listed far and odd coordinates, on the listed sizes.
+#[test]
+fn a2_the_listed_coordinates_have_a_texel_on_every_size() {
+    let listed = [
+        1_048_576.25,
+        8_388_608.0,
+        16_777_217.0,
+        1e30,
+        f64::INFINITY,
+        f64::NEG_INFINITY,
+        f64::NAN,
+    ];
+    for size in [
+        UVec2::ONE,
+        UVec2::new(1, 9),
+        UVec2::new(3, 5),
+        UVec2::new(16384, 1),
+    ] {
+        let count = (size.x * size.y) as usize;
+        let texels = (0..count).map(|k| k as f32 / count as f32).collect();
+        let texture = made(size, 1, Transfer::Linear, Texels::F32(texels));
+        for mode in MODES {
+            for s in listed {
+                for t in listed {
+                    let colour = bilinear(&texture, [mode; 2], DVec2::new(s, t)).x;
+                    assert!(
+                        (0.0..=1.0).contains(&colour),
+                        "{s} {t} of {size}, {mode:?}: {colour}"
+                    );
+                }
+            }
+        }
+    }
+}
