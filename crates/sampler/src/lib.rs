@@ -59,7 +59,7 @@
 //! | sRGB encode, 8 bit | exactly rounded for all 2³² inputs | `tests/properties/transfer.rs` |
 //!
 //! The suite strides over the encoder's inputs; `cargo test --release -p texrender-sampler -- --ignored` checks all
-//! 2³², in a few minutes.
+//! 2³², in half a minute.
 //!
 //! # Limits
 //! An f32 coordinate is spaced 2⁻²⁴·2ᵏ around 2ᵏ: on a 4096 texture it stops resolving 1/256 texel beyond 16
