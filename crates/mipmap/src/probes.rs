@@ -1,15 +1,17 @@
 //! A line of probes along the major axis of a footprint.
 //!
-//! **Equal weights.** The box of length η (in units of the probe distance) is cut into cells of length 1, centred on
-//! the middle one; the two end cells hold what is left. Each cell has one probe, at its middle, weighted by its length:
+//! **Equal weights.** The box of length η (in units of the probe distance) is cut into cells of length 1 on either
+//! side of its middle; the two end cells hold what is left. Each cell has one probe, at its middle, weighted by its
+//! length:
 //!
 //! ```text
-//!   η = 3.6    |··|------|------|------|··|       cells
-//!               ↑     ↑      ↑      ↑    ↑        probes
-//!              0.3    1      1      1   0.3       weights, sum η
+//!   η = 3.6    |·····|------|------|·····|        cells
+//!                 ↑     ↑      ↑      ↑           probes
+//!                0.8    1      1     0.8          weights, sum η
 //! ```
 //!
-//! As η grows, end cells grow from length 0, so no probe appears with a jump.
+//! As η grows, end cells grow from length 0, so no probe appears with a jump. Up to η = 2 there are two probes, which
+//! part from the middle, (η − 1)/2 to either side: from one probe at η = 1 to two cells at η = 2.
 //!
 //! **Gaussian weights.** A trilinear probe of diameter 1 has variance ¼: 1/12 of the level's box and 1/6 of the
 //! bilinear tent. That is the variance of a Gaussian pixel of σ = ½ across the minor axis; along the major axis η²/4
@@ -55,11 +57,13 @@ pub(crate) struct Probes {
 #[derive(Debug, Clone, Copy)]
 enum Shape {
     Box {
-        /// Whole cells on each side of the middle one.
+        /// Whole cells on each side of the middle.
         whole: u32,
-        /// Length of an end cell, in [0, 1).
+        /// Where the probes of the end cells stand, in cells from the middle.
+        end_at: f64,
+        /// Their weight, in [0, 1].
         end: f64,
-        /// Length of the box in cells.
+        /// Sum of all weights.
         total: f64,
     },
     Gaussian {
@@ -79,12 +83,20 @@ impl Probes {
     pub(crate) fn along(axis: DVec2, eta: f32, weights: ProbeWeights) -> Self {
         let eta = f64::from(eta);
         let shape = match weights {
+            ProbeWeights::Equal if eta <= 2.0 => Shape::Box {
+                whole: 0,
+                end_at: (eta - 1.0) * 0.5,
+                end: 1.0,
+                total: 2.0,
+            },
             ProbeWeights::Equal => {
-                let half = (eta - 1.0) * 0.5;
+                let half = eta * 0.5;
                 let whole = half as u32;
+                let end = half - f64::from(whole);
                 Shape::Box {
                     whole,
-                    end: half - f64::from(whole),
+                    end_at: f64::from(whole) + 0.5 * end,
+                    end,
                     total: eta,
                 }
             }
@@ -104,27 +116,35 @@ impl Probes {
 
     /// One probe's offset from the middle, by its weight.
     pub(crate) fn pick(self, random: &mut f64) -> DVec2 {
-        let weight = |x: f64| match self.shape {
-            Shape::Box { .. } => 1.0,
-            Shape::Gaussian { falloff, .. } => gaussian(x, falloff),
-        };
-        let (side, end) = match self.shape {
-            Shape::Box { whole, end, .. } => (whole, end),
-            Shape::Gaussian { side, .. } => (side, 0.0),
-        };
-        let end_cell = f64::from(side) + 0.5 + 0.5 * end;
-        // From the ends inwards: each is picked or left, until the middle is left.
-        let mut total = weight(0.0) + 2.0 * end;
-        total += (1..=side)
-            .map(|probe| 2.0 * weight(f64::from(probe)))
-            .sum::<f64>();
-        let ends = (end > 0.0).then_some((end_cell, end));
-        let others = (1..=side)
-            .rev()
-            .map(|probe| (f64::from(probe), weight(f64::from(probe))));
-        for (cells, weight) in ends.into_iter().chain(others) {
+        match self.shape {
+            Shape::Box {
+                whole,
+                end_at,
+                end,
+                total,
+            } => {
+                let pairs = (0..whole).map(|k| (f64::from(k) + 0.5, 1.0));
+                self.pick_among(random, std::iter::once((end_at, end)).chain(pairs), total)
+            }
+            Shape::Gaussian { side, falloff } => {
+                let weight = |probe: u32| gaussian(f64::from(probe), falloff);
+                let total = weight(0) + (1..=side).map(|probe| 2.0 * weight(probe)).sum::<f64>();
+                let pairs = (1..=side).map(|probe| (f64::from(probe), weight(probe)));
+                self.pick_among(random, pairs, total)
+            }
+        }
+    }
+
+    /// One of pairs at ±cells with a weight each, or the middle, which has what they leave of `total`.
+    fn pick_among(
+        self,
+        random: &mut f64,
+        pairs: impl Iterator<Item = (f64, f64)>,
+        mut total: f64,
+    ) -> DVec2 {
+        for (cells, weight) in pairs {
             for cells in [cells, -cells] {
-                if picks_first(random, weight / total) {
+                if weight > 0.0 && picks_first(random, weight / total) {
                     return self.step * cells;
                 }
                 total -= weight;
@@ -139,20 +159,24 @@ impl Probes {
     #[inline(always)]
     pub(crate) fn map_sum(self, colour: impl Fn(DVec2) -> DVec4) -> DVec4 {
         let pair = |cells: f64| colour(self.step * cells) + colour(self.step * -cells);
-        let middle = colour(DVec2::ZERO);
         match self.shape {
-            Shape::Box { whole, end, total } => {
-                let mut sum = middle;
-                for cell in 1..=whole {
-                    sum += pair(f64::from(cell));
+            Shape::Box {
+                whole,
+                end_at,
+                end,
+                total,
+            } => {
+                let mut sum = DVec4::ZERO;
+                for cell in 0..whole {
+                    sum += pair(f64::from(cell) + 0.5);
                 }
                 if end > 0.0 {
-                    // The end cell's middle: half a cell beyond the last whole one's centre, and half its own length.
-                    sum += pair(f64::from(whole) + 0.5 + 0.5 * end) * end;
+                    sum += pair(end_at) * end;
                 }
                 sum / total
             }
             Shape::Gaussian { side, falloff } => {
+                let middle = colour(DVec2::ZERO);
                 // Differences from the middle: a constant has none.
                 let mut total = 1.0 - EDGE;
                 let mut sum = DVec4::ZERO;
@@ -193,12 +217,34 @@ mod tests {
     }
 
     #[test]
-    fn the_mean_distance_is_near_that_of_the_box() {
-        // A box of length η has mean |x| = η/4; the midpoint rule is off by the middle cell alone: 1/(4η).
-        for eta in [2.0f32, 3.0, 7.5, 16.0] {
-            let expected = f64::from(eta) / 4.0 - 0.25 / f64::from(eta);
+    fn the_mean_distance_is_that_of_the_box() {
+        // A box of length η has mean |x| = η/4, and the midpoint rule is exact on either side of the middle.
+        for eta in [2.0f32, 2.5, 3.0, 7.5, 16.0] {
             let mean = moment(eta, 1, ProbeWeights::Equal);
-            assert!((mean - expected).abs() < 1e-12, "{eta}");
+            assert!((mean - f64::from(eta) / 4.0).abs() < 1e-12, "{eta}");
+        }
+        // Two probes that part.
+        assert!((moment(1.5, 1, ProbeWeights::Equal) - 0.25).abs() < 1e-12);
+    }
+
+    #[test]
+    fn picks_are_in_proportion_to_the_weights() {
+        for (eta, weights) in [
+            (1.3, ProbeWeights::Equal),
+            (3.7, ProbeWeights::Equal),
+            (6.0, ProbeWeights::Gaussian),
+        ] {
+            let probes = Probes::along(DVec2::X * f64::from(eta), eta, weights);
+            let count = 100_000;
+            let picked = (0..count).map(|k| {
+                let mut random = (f64::from(k) + 0.5) / f64::from(count);
+                probes.pick(&mut random).x.powi(2)
+            });
+            let mean = picked.sum::<f64>() / f64::from(count);
+            assert!(
+                (mean - moment(eta, 2, weights)).abs() < 1e-3,
+                "{eta}: {mean}"
+            );
         }
     }
 

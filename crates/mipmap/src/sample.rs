@@ -96,13 +96,13 @@ impl Default for SamplerState {
 /// With major and minor the footprint's axes in texels ([`crate::footprint_axes`]):
 ///
 /// ```text
-/// η = min(major/minor, max_anisotropy, max(4·major − 1, 1))
+/// η = min(major/minor, max_anisotropy, max(2·major, 1))
 /// λ = log₂(major/η) − 0.4·min(log₂(major/minor/η), 1) + bias, within its range
 /// ```
 ///
 /// The footprint is covered by a line of probes a distance major/η apart along the major axis, weighted as
 /// [`ProbeWeights`] says (by default as a box of length `major`); every probe filters at λ. For η = 1 that is one
-/// probe. The third term of η leaves one probe to a footprint of half a texel (of a texel, where magnification is
+/// probe. The third term of η keeps probes at least half a texel apart (a texel, where magnification is
 /// [`Filter::Nearest`], so that no edge of a texel is softened). Where max_anisotropy cuts the aspect, λ rises; by
 /// [`LodRule::Exact`] up to 0.4 less than the longer side asks for: a square as wide as a long footprint is too wide
 /// across it. [`LodRule::MaxLength`] has no such term: it is the textbook's. The result is continuous in every input
@@ -229,7 +229,7 @@ impl Plan {
 fn followed_anisotropy(axes: &AxisLengths, max_anisotropy: f32, magnify: Filter) -> f32 {
     let most = match magnify {
         Filter::Nearest => axes.major,
-        Filter::Bilinear | Filter::Bicubic(_) => 4.0 * axes.major - 1.0,
+        Filter::Bilinear | Filter::Bicubic(_) => 2.0 * axes.major,
     };
     axes.anisotropy().min(max_anisotropy).min(most.max(1.0))
 }

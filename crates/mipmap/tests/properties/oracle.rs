@@ -107,19 +107,22 @@ pub(crate) fn anisotropic(pyramid: &Pyramid, state: &SamplerState, footprint: &F
     }
     let eta = (major / minor)
         .min(f64::from(state.max_anisotropy))
-        .min((4.0 * major - 1.0).max(1.0))
+        .min((2.0 * major).max(1.0))
         .max(1.0);
     let lod = (major / eta).log2() - 0.4 * (major / minor / eta).log2().clamp(0.0, 1.0);
     let axis = major_axis(pyramid.size(), footprint, major, minor);
-    // Boundaries of cells: half-integers inside ±η/2, and the ends.
+    let probe = |cells: f64| trilinear(pyramid, lod, footprint.st + axis * (cells / eta));
+    if eta <= 2.0 {
+        let apart = (eta - 1.0) / 2.0;
+        return (probe(apart) + probe(-apart)) * 0.5;
+    }
+    // Cells between integers inside ±η/2, and what is left at the ends.
     let mut sum = DVec4::ZERO;
-    for cell in -80..=80 {
-        let low = (f64::from(cell) - 0.5).max(-eta / 2.0);
-        let high = (f64::from(cell) + 0.5).min(eta / 2.0);
+    for cell in -40..40 {
+        let low = f64::from(cell).max(-eta / 2.0);
+        let high = f64::from(cell + 1).min(eta / 2.0);
         if high > low {
-            let middle = 0.5 * (low + high);
-            sum += trilinear(pyramid, lod, footprint.st + axis * (middle / eta))
-                * ((high - low) / eta);
+            sum += probe(0.5 * (low + high)) * ((high - low) / eta);
         }
     }
     sum
