@@ -96,13 +96,14 @@ impl Default for SamplerState {
 /// With major and minor the footprint's axes in texels ([`crate::footprint_axes`]):
 ///
 /// ```text
-/// η = min(major/minor, max_anisotropy, max(2·major, 1))
+/// a = major/minor if that is 1.6 or more, else max(1.5·major/minor − 0.8, 1)
+/// η = min(a, max_anisotropy, max(2·major, 1))
 /// λ = log₂(major/η) − 0.4·min(log₂(major/minor/η), 1) + bias, within its range
 /// ```
 ///
 /// The footprint is covered by a line of probes a distance major/η apart along the major axis, weighted as
 /// [`ProbeWeights`] says (by default as a box of length `major`); every probe filters at λ. For η = 1 that is one
-/// probe. The third term of η keeps probes at least half a texel apart (a texel, where magnification is
+/// probe, as for footprints up to 1.2 times as long as wide, where more would cost and err more. The last term of η keeps probes at least half a texel apart (a texel, where magnification is
 /// [`Filter::Nearest`], so that no edge of a texel is softened). Where max_anisotropy cuts the aspect, λ rises; by
 /// [`LodRule::Exact`] up to 0.4 less than the longer side asks for: a square as wide as a long footprint is too wide
 /// across it. [`LodRule::MaxLength`] has no such term: it is the textbook's. The result is continuous in every input
@@ -231,7 +232,14 @@ fn followed_anisotropy(axes: &AxisLengths, max_anisotropy: f32, magnify: Filter)
         Filter::Nearest => axes.major,
         Filter::Bilinear | Filter::Bicubic(_) => 2.0 * axes.major,
     };
-    axes.anisotropy().min(max_anisotropy).min(most.max(1.0))
+    let aspect = axes.anisotropy();
+    // Nearly round: one probe errs less than two.
+    let needed = if aspect < 1.6 {
+        (1.5 * aspect - 0.8).max(1.0)
+    } else {
+        aspect
+    };
+    needed.min(max_anisotropy).min(most.max(1.0))
 }
 
 /// The major axis, in texels, up to which [`followed_anisotropy`] is 1 whatever the aspect.

@@ -105,7 +105,13 @@ pub(crate) fn anisotropic(pyramid: &Pyramid, state: &SamplerState, footprint: &F
     if major == 0.0 {
         return trilinear(pyramid, f64::NEG_INFINITY, footprint.st);
     }
-    let eta = (major / minor)
+    let aspect = major / minor;
+    let needed = if aspect < 1.6 {
+        1.0f64.max(1.5 * aspect - 0.8)
+    } else {
+        aspect
+    };
+    let eta = needed
         .min(f64::from(state.max_anisotropy))
         .min((2.0 * major).max(1.0))
         .max(1.0);
