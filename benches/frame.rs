@@ -1,17 +1,38 @@
-//! The speed of a frame and of its stages, and of each texture filter and level kernel beside its error.
+//! The speed of a frame and of its stages, and of each lookup, texture filter, level kernel and solid texture beside its
+//! error.
 //!
 //! `cargo bench -p texrender-rs`, with `TEXRENDER_ASSETS` naming the folder of shared models for
-//! more than the showcase; `cargo bench -p texrender-rs -- mipmap` for the filters alone.
+//! more than the showcase; `cargo bench -p texrender-rs -- mipmap` for the filters alone. Other groups are `sampler`,
+//! `sampler/layout` and `solid`.
 #![allow(
     missing_docs,
     reason = "criterion's macros make public functions without documentation"
 )]
 
 mod filters;
+mod layout;
+mod lookups;
+mod plain;
 mod pyramid;
+mod solid;
+mod space;
 mod stages;
+mod suite;
+mod tile;
+mod transfer;
 
 use criterion::{criterion_group, criterion_main};
 
-criterion_group!(benches, stages::bench, filters::bench, pyramid::bench);
+criterion_group!(
+    benches,
+    stages::bench,
+    filters::bench,
+    pyramid::bench,
+    layout::bench,
+    lookups::bench,
+    space::bench,
+    transfer::bench,
+    solid::bench,
+    tile::bench
+);
 criterion_main!(benches);

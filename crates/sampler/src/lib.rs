@@ -20,6 +20,10 @@
 //! Everything is checked when the texture is made; every lookup afterwards has an answer. What is not finite in a
 //! file is counted and repaired by [`Texture::repaired`]. Three dimensions: [`volume`]. Six faces: [`cube`].
 //!
+//! # Layout
+//! Texels lie row by row, as in a file. Blocks and Morton order were measured and cost more than they gain, turned and
+//! random lookups included: `docs/texel-layout.md` in the repository has the figures, `benches/layout.rs` repeats them.
+//!
 //! # Colour: [`transfer`]
 //! sRGB is decoded at the texel, before any filter. Both directions are exactly rounded. Alpha is never encoded.
 //!
