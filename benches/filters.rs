@@ -1,13 +1,17 @@
-//! Each texture filter on a floor in perspective: ns a lookup beside its error against the mean over
-//! the pixel. Ids `mipmap/filter/NAME`.
+//! Each texture filter on a floor in perspective: ns a lookup beside its error against the mean over the pixel's square,
+//! and against that under a Gaussian of σ = ½ pixel, which some filters aim at. Ids `mipmap/filter/NAME`.
 
+use std::cell::LazyCell;
 use std::hint::black_box;
 use std::sync::Arc;
 use std::time::Duration;
 
 use criterion::{BenchmarkId, Criterion, Throughput};
 use glam::{DVec2, DVec3, UVec2, Vec2, Vec4};
-use mipmap::{Content, Footprint, MipFilter, Pyramid, RipMap, SamplerState, SummedArea};
+use mipmap::{
+    Content, EwaTier, Footprint, MipFilter, ProbeWeights, Pyramid, RipMap, SamplerState,
+    SummedArea, Tolerance, automatic, blue_noise, ewa, stochastic,
+};
 use sampler::{AddressMode, Filter, Texels, Texture, Transfer};
 
 /// Texels along an edge of the checkered texture, and of one of its cells.
@@ -22,16 +26,17 @@ const PITCH: f64 = 0.35;
 const FOV_DEGREES: f64 = 60.0;
 /// Farther floor is left to the horizon.
 const FARTHEST: f64 = 800.0;
-/// Rays along an edge of a pixel for the reference.
-const RAYS: u32 = 24;
+/// Rays along an edge of a pixel, and of the four pixels that a Gaussian sees, for the references.
+const RAYS: [u32; 2] = [24, 64];
+const REPEAT: [AddressMode; 2] = [AddressMode::Repeat; 2];
 
 pub(crate) fn bench(criterion: &mut Criterion) {
-    let pixels: Vec<(Footprint, f64)> = (0..SIZE * SIZE)
-        .filter_map(|k| {
-            let pixel = DVec2::new(f64::from(k % SIZE), f64::from(k / SIZE));
-            Some((footprint(pixel + 0.5)?, reference(pixel)?))
-        })
+    let pixels: Vec<Pixel> = (0..SIZE * SIZE)
+        .filter_map(|k| Pixel::at(UVec2::new(k % SIZE, k / SIZE)))
         .collect();
+    // Made for the first filter that is not left out.
+    let references =
+        LazyCell::new(|| -> Vec<[f64; 2]> { pixels.iter().map(Pixel::references).collect() });
     let mut group = criterion.benchmark_group("mipmap/filter");
     group
         .sample_size(15)
@@ -39,23 +44,16 @@ pub(crate) fn bench(criterion: &mut Criterion) {
         .measurement_time(Duration::from_secs(1))
         .throughput(Throughput::Elements(pixels.len() as u64));
     for (name, lookup) in lookups() {
-        let errors = pixels
-            .iter()
-            .map(|(footprint, expected)| f64::from(lookup(footprint).x) - expected);
-        let (mut squares, mut worst) = (0.0, 0f64);
-        for error in errors {
-            squares += error * error;
-            worst = worst.max(error.abs());
-        }
-        let rmse = (squares / pixels.len() as f64).sqrt();
-        println!(
-            "mipmap/filter/{name}: RMSE {rmse:.4}, largest error {worst:.4}, of {} lookups",
-            pixels.len()
-        );
-        group.bench_function(BenchmarkId::from_parameter(name), |b| {
+        let mut reported = false;
+        group.bench_function(BenchmarkId::from_parameter(&name), |b| {
+            if !reported {
+                reported = true;
+                let got: Vec<f64> = pixels.iter().map(|pixel| lookup(pixel).x.into()).collect();
+                print_errors(&name, &got, &references);
+            }
             b.iter(|| {
-                for (footprint, _) in &pixels {
-                    black_box(lookup(black_box(footprint)));
+                for pixel in &pixels {
+                    black_box(lookup(black_box(pixel)));
                 }
             });
         });
@@ -63,31 +61,114 @@ pub(crate) fn bench(criterion: &mut Criterion) {
     group.finish();
 }
 
+fn print_errors(name: &str, got: &[f64], references: &[[f64; 2]]) {
+    let of = |kernel: usize| {
+        let errors = got.iter().zip(references);
+        let errors = errors.map(|(got, expected)| got - expected[kernel]);
+        let (mut squares, mut worst) = (0.0, 0f64);
+        for error in errors {
+            squares += error * error;
+            worst = worst.max(error.abs());
+        }
+        let rmse = (squares / got.len() as f64).sqrt();
+        format!("RMSE {rmse:.4}, largest error {worst:.4}")
+    };
+    println!(
+        "mipmap/filter/{name}: box {}; Gaussian {}; of {} lookups",
+        of(0),
+        of(1),
+        got.len()
+    );
+}
+
+/// A pixel all of which sees the floor.
+struct Pixel {
+    at: UVec2,
+    footprint: Footprint,
+}
+
+impl Pixel {
+    fn at(at: UVec2) -> Option<Self> {
+        let corner = at.as_dvec2();
+        for (x, y) in [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0), (1.0, 1.0)] {
+            texture_coordinate(ray(corner + DVec2::new(x, y))[0])?;
+        }
+        let footprint = footprint(corner + 0.5)?;
+        Some(Self { at, footprint })
+    }
+
+    /// Mean light of the floor over the pixel's square, and under a Gaussian of σ = ½ cut at 4 σ, by rays and f64
+    /// bilinear lookups of the exact checker. Rays past the floor's end do not count.
+    fn references(&self) -> [f64; 2] {
+        let corner = self.at.as_dvec2();
+        let over = |side: f64, rays: u32, weight: fn(DVec2) -> f64| {
+            let (mut sum, mut weights) = (0.0, 0.0);
+            for k in 0..rays * rays {
+                let inside = DVec2::new(f64::from(k % rays), f64::from(k / rays)) + 0.5;
+                let from_centre = (inside / f64::from(rays) - 0.5) * side;
+                let [ray, ..] = ray(corner + 0.5 + from_centre);
+                if let Some(st) = texture_coordinate(ray) {
+                    let weight = weight(from_centre);
+                    sum += bilinear(st) * weight;
+                    weights += weight;
+                }
+            }
+            sum / weights
+        };
+        [
+            over(1.0, RAYS[0], |_| 1.0),
+            over(4.0, RAYS[1], |at| (-2.0 * at.length_squared()).exp()),
+        ]
+    }
+}
+
 /// A filter of the checker.
-type Lookup = Box<dyn Fn(&Footprint) -> Vec4>;
+type Lookup = Box<dyn Fn(&Pixel) -> Vec4>;
 
 /// The pyramid's filters, and those of the two tables of boxes along the axes.
 fn lookups() -> Vec<(String, Lookup)> {
     let pyramid = Pyramid::build(checker(), Content::Colour).expect("colour of any format");
     let pyramid = Arc::new(pyramid);
-    let mut lookups: Vec<(String, Lookup)> = states()
-        .into_iter()
-        .map(|(name, state)| {
-            let pyramid = pyramid.clone();
-            let lookup: Lookup = Box::new(move |at| mipmap::sample(&pyramid, &state, at));
-            (name, lookup)
-        })
-        .collect();
-    let address = [AddressMode::Repeat; 2];
+    let mut lookups: Vec<(String, Lookup)> = Vec::new();
+    let mut add = |name: &str, lookup: fn(&Pyramid, &SamplerState, &Pixel) -> Vec4, state| {
+        let pyramid = pyramid.clone();
+        let lookup: Lookup = Box::new(move |pixel| lookup(&pyramid, &state, pixel));
+        lookups.push((name.to_owned(), lookup));
+    };
+    for (name, state) in states() {
+        add(
+            &name,
+            |pyramid, state, pixel| mipmap::sample(pyramid, state, &pixel.footprint),
+            state,
+        );
+    }
+    add(
+        "stochastic",
+        |pyramid, state, pixel| {
+            stochastic(pyramid, state, &pixel.footprint, blue_noise(pixel.at, 0, 0))
+        },
+        SamplerState::default(),
+    );
+    for tier in EwaTier::ALL {
+        let (pyramid, name) = (pyramid.clone(), format!("ewa_{tier:?}").to_lowercase());
+        let lookup = move |pixel: &Pixel| ewa(&pyramid, REPEAT, tier, &pixel.footprint);
+        lookups.push((name, Box::new(lookup)));
+    }
+    for rmse in [0.05, 0.02, 0.01, 0.005] {
+        let (pyramid, state) = (pyramid.clone(), SamplerState::default());
+        let tolerance = Tolerance::new(rmse).expect("above 0");
+        let lookup = move |pixel: &Pixel| automatic(&pyramid, &state, tolerance, &pixel.footprint);
+        lookups.push((format!("automatic_{rmse}"), Box::new(lookup)));
+    }
     let rip_map = RipMap::build(checker(), Content::Colour).expect("colour of any format");
     let summed_area = SummedArea::build(&checker()).expect("a small texture of 8 bits");
     lookups.push((
         "rip_map".to_owned(),
-        Box::new(move |at| rip_map.sample(address, at)),
+        Box::new(move |pixel| rip_map.sample(REPEAT, &pixel.footprint)),
     ));
     lookups.push((
         "summed_area".to_owned(),
-        Box::new(move |at| summed_area.sample(address, at)),
+        Box::new(move |pixel| summed_area.sample(REPEAT, &pixel.footprint)),
     ));
     lookups
 }
@@ -118,6 +199,11 @@ fn states() -> Vec<(String, SamplerState)> {
         let anisotropic = state(Filter::Bilinear, MipFilter::Linear, n.into());
         states.push((format!("aniso{n}"), anisotropic));
     }
+    let gaussian = SamplerState {
+        probe_weights: ProbeWeights::Gaussian,
+        ..SamplerState::default()
+    };
+    states.push(("aniso16_gaussian".to_owned(), gaussian));
     states
 }
 
@@ -169,17 +255,6 @@ fn footprint(at: DVec2) -> Option<Footprint> {
         dst_dx: slope(dx),
         dst_dy: slope(dy),
     })
-}
-
-/// Mean light of the floor over a pixel's square, by rays and f64 bilinear lookups of the exact checker.
-fn reference(pixel: DVec2) -> Option<f64> {
-    let mut sum = 0.0;
-    for k in 0..RAYS * RAYS {
-        let inside = DVec2::new(f64::from(k % RAYS), f64::from(k / RAYS)) + 0.5;
-        let [ray, ..] = ray(pixel + inside / f64::from(RAYS));
-        sum += bilinear(texture_coordinate(ray)?);
-    }
-    Some(sum / f64::from(RAYS * RAYS))
 }
 
 #[expect(
