@@ -207,11 +207,13 @@ impl Plan {
             Precision::Exact => libm::log2f(x),
             Precision::Fixed => quick_log2(x),
         };
+        // The levels wait for these quotients, and one by 1 changes nothing.
+        let over_eta = |length: f32| if eta == 1.0 { length } else { length / eta };
         let sharpening = match state.lod_rule {
-            LodRule::Exact => CUT_SHARPENING * cut_octaves(aspect / eta, log2),
+            LodRule::Exact => CUT_SHARPENING * cut_octaves(over_eta(aspect), log2),
             LodRule::MaxLength => 0.0,
         };
-        let lambda = state.limited(log2(axes.major / eta) - sharpening);
+        let lambda = state.limited(log2(over_eta(axes.major)) - sharpening);
         let filter = if lambda > 0.0 {
             state.minify
         } else {
@@ -243,6 +245,9 @@ impl Plan {
 /// η: the aspect that probes follow.
 #[inline]
 fn followed_anisotropy(major: f32, aspect: f32, max_anisotropy: f32, magnify: Filter) -> f32 {
+    if max_anisotropy == 1.0 {
+        return 1.0;
+    }
     let most = match magnify {
         Filter::Nearest => major,
         Filter::Bilinear | Filter::Bicubic(_) => 4.0 * major - 1.0,
