@@ -68,6 +68,7 @@
 //! | [`automatic`], RMSE on checkerboards | its [`Tolerance`] | `tests/properties/automatic.rs` |
 //! | [`stochastic`] | unbiased | `tests/properties/stochastic.rs` |
 //! | trilinear lookups | one of those that ±8e-6 of λ can give | `tests/properties/verifier.rs` |
+//! | [`sample`] of 8-bit texels in integers against the exact path | [`sampler::BILINEAR_FIXED_MAX_ERROR`] + 2e-5 | `tests/properties/filtering.rs` |
 //! | [`RipMap`] against its f64 kernel | 1e-5 of the texels' range | `tests/properties/rip_map.rs` |
 //! | [`SummedArea`] against the integral | 1e-6 of the texels' range | `tests/properties/summed_area.rs` |
 //! | continuity over derivatives | ≤ 1/255 per 1e-3 step | `tests/properties/filtering.rs` |

@@ -54,3 +54,53 @@ pub fn lod(size: UVec2, dst_dx: Vec2, dst_dy: Vec2, rule: LodRule) -> f32 {
 pub(crate) fn round_to_f32(value: f64) -> f32 {
     value as f32
 }
+
+/// Bound of [`quick_log2`]'s error beside the rounding of its result to f32.
+const QUICK_LOG2_MAX_ERROR: f32 = 7e-7;
+
+/// log₂ x without a table or a division: where texels are filtered in integers, a level need not be exact either.
+///
+/// x = m·2ᵏ with m in √½..√2; a polynomial of degree 6 through the Chebyshev nodes of log₂(m)/(m − 1) on that range,
+/// times m − 1: exact at powers of two. Within [`QUICK_LOG2_MAX_ERROR`]; what is not a normal number is libm's.
+#[inline]
+pub(crate) fn quick_log2(x: f32) -> f32 {
+    const SQRT_HALF: u32 = 0x3f35_04f3;
+    const _: () = assert!(QUICK_LOG2_MAX_ERROR < LOD_MAX_ABS_ERROR);
+    let bits = x.to_bits();
+    if !(f32::MIN_POSITIVE.to_bits()..=f32::MAX.to_bits()).contains(&bits) {
+        return libm::log2f(x);
+    }
+    let exponent = bits.wrapping_sub(SQRT_HALF).cast_signed() >> 23;
+    let z = f32::from_bits(bits.wrapping_sub((exponent << 23).cast_unsigned())) - 1.0;
+    // Grouped so that the products do not wait for each other.
+    let squared = z * z;
+    let low = 1.442_696_6 - 0.721_360_2 * z;
+    let middle = 0.480_613_1 - 0.359_524_46 * z;
+    let high = 0.296_119_57 - 0.267_963_86 * z + 0.168_186_59 * squared;
+    let slope = low + squared * (middle + squared * high);
+    exponent as f32 + z * slope
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_quick_logarithm_keeps_its_bound() {
+        // Every 1009th number of each sign and kind; the exponents' mantissas are all met that way.
+        for bits in (0..=u32::MAX).step_by(1009) {
+            let x = f32::from_bits(bits);
+            let [quick, exact] = [quick_log2(x), libm::log2f(x)];
+            // Half an ulp of each result.
+            let allowed = QUICK_LOG2_MAX_ERROR + exact.abs() * f32::EPSILON;
+            let same = quick == exact || (quick.is_nan() && exact.is_nan());
+            assert!(
+                same || (quick - exact).abs() <= allowed,
+                "{x}: {quick} {exact}"
+            );
+        }
+        for exponent in -126i16..128 {
+            assert_eq!(quick_log2(f32::from(exponent).exp2()), f32::from(exponent));
+        }
+    }
+}

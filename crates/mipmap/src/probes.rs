@@ -24,6 +24,7 @@
 //! reach 0 where they are cut, so that none appears with a jump; s' is s widened by what the cut takes away.
 
 use glam::{DVec2, DVec4};
+use sampler::{FixedMean, FixedSt};
 
 use crate::stochastic::picks_first;
 
@@ -153,6 +154,46 @@ impl Probes {
         DVec2::ZERO
     }
 
+    /// Adds the line about `st` to each of `means`; `None` where it leaves what [`FixedSt`] holds.
+    #[inline]
+    pub(crate) fn add_to(self, means: &mut [FixedMean], st: DVec2) -> Option<()> {
+        let at = |cells: f64| FixedSt::try_new(st + self.step * cells);
+        match self.shape {
+            Shape::Box {
+                whole, end_at, end, ..
+            } => {
+                let first = at(0.5 - f64::from(whole))?;
+                let step = FixedSt::try_new(self.step)?;
+                for mean in means.iter_mut() {
+                    mean.add_line(first, step, 2 * whole, WEIGHT_ONE);
+                }
+                let weight = fixed_weight(end);
+                if weight > 0 {
+                    let ends = [at(-end_at)?, at(end_at)?];
+                    for mean in means {
+                        ends.iter().for_each(|&end| mean.add(end, weight));
+                    }
+                }
+            }
+            Shape::Gaussian { side, falloff } => {
+                let middle = FixedSt::try_new(st)?;
+                let weight = fixed_weight(1.0 - EDGE);
+                for mean in means.iter_mut() {
+                    mean.add(middle, weight);
+                }
+                for probe in 1..=side {
+                    let x = f64::from(probe);
+                    let weight = fixed_weight(gaussian(x, falloff));
+                    let pair = [at(-x)?, at(x)?];
+                    for mean in means.iter_mut() {
+                        pair.iter().for_each(|&probe| mean.add(probe, weight));
+                    }
+                }
+            }
+        }
+        Some(())
+    }
+
     /// The weighted mean of `colour` over the probes' offsets from the middle.
     ///
     /// Summed in f64 so that a constant comes back to the bit and the largest f32 does not overflow.
@@ -190,6 +231,19 @@ impl Probes {
             }
         }
     }
+}
+
+/// A probe's weight of 1 in integers: of the longest line the weights add up to 64 by equal weights and to 80 by
+/// Gaussian ones, where [`FixedMean`] allows 256.
+const WEIGHT_ONE: u32 = 1 << 20;
+
+/// A weight in 0..=1 in units of 2⁻²⁰, rounded to nearest.
+#[allow(
+    clippy::cast_possible_truncation,
+    reason = "0 ≤ weight ≤ 1, and truncation is the floor"
+)]
+fn fixed_weight(weight: f64) -> u32 {
+    (weight * f64::from(WEIGHT_ONE) + 0.5) as u32
 }
 
 /// The weight of the probe at x, not normalised.

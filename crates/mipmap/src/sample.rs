@@ -1,8 +1,8 @@
 use glam::{DVec2, DVec4, UVec2, Vec4};
-use sampler::{AddressMode, Addressing, Filter, Precision};
+use sampler::{AddressMode, Addressing, Filter, FixedMean, Precision, Texels};
 
 use crate::footprint::{AxisLengths, Footprint};
-use crate::lod::LodRule;
+use crate::lod::{LodRule, quick_log2};
 use crate::probes::{ProbeWeights, Probes};
 use crate::pyramid::Pyramid;
 use crate::stochastic::picks_first;
@@ -115,7 +115,8 @@ impl Default for SamplerState {
 /// level.
 ///
 /// # Accuracy
-/// Within 1e-5 of the range of texels read of the f64 form of the same kernel; `tests/properties/anisotropic.rs`.
+/// Within 1e-5 of the range of texels read of the f64 form of the same kernel; `tests/properties/anisotropic.rs`. By
+/// [`Precision::Fixed`] within [`sampler::BILINEAR_FIXED_MAX_ERROR`] + 2e-5 of that; `tests/properties/filtering.rs`.
 /// # Source
 /// Vulkan 1.3, "Scale Factor Operation", "Image Level(s) Selection", "Texel Anisotropic Filtering" (η and λ; its
 /// N = ⌈η⌉ equal probes jump with N, hence the weights here); McCormack et al. 1999, "Feline" (the probe line).
@@ -143,6 +144,12 @@ pub fn sample_with_lod(
     footprint: &Footprint,
 ) -> (Vec4, f32) {
     let plan = Plan::of(pyramid, state, footprint);
+    if state.precision == Precision::Fixed
+        && plan.filter == Filter::Bilinear
+        && let Some(colour) = in_integers(pyramid, state, &plan, footprint.st)
+    {
+        return (colour, plan.levels.lod());
+    }
     let at = |st: DVec2| {
         plan.levels
             .blend(|level| lookup(pyramid, state, plan.filter, level, st))
@@ -195,9 +202,19 @@ impl Plan {
             footprint.dst_dy,
             state.lod_rule,
         );
-        let eta = followed_anisotropy(&axes, max_anisotropy, state.magnify);
-        let lambda =
-            state.limited(libm::log2f(axes.major / eta) - sharpening(&axes, eta, state.lod_rule));
+        let aspect = axes.anisotropy();
+        let eta = followed_anisotropy(axes.major, aspect, max_anisotropy, state.magnify);
+        let log2 = |x| match state.precision {
+            Precision::Exact => libm::log2f(x),
+            Precision::Fixed => quick_log2(x),
+        };
+        // The levels wait for these quotients, and one by 1 changes nothing.
+        let over_eta = |length: f32| if eta == 1.0 { length } else { length / eta };
+        let sharpening = match state.lod_rule {
+            LodRule::Exact => CUT_SHARPENING * cut_octaves(over_eta(aspect), log2),
+            LodRule::MaxLength => 0.0,
+        };
+        let lambda = state.limited(log2(over_eta(axes.major)) - sharpening);
         let filter = if lambda > 0.0 {
             state.minify
         } else {
@@ -227,12 +244,15 @@ impl Plan {
 }
 
 /// η: the aspect that probes follow.
-fn followed_anisotropy(axes: &AxisLengths, max_anisotropy: f32, magnify: Filter) -> f32 {
+#[inline]
+fn followed_anisotropy(major: f32, aspect: f32, max_anisotropy: f32, magnify: Filter) -> f32 {
+    if max_anisotropy == 1.0 {
+        return 1.0;
+    }
     let most = match magnify {
-        Filter::Nearest => axes.major,
-        Filter::Bilinear | Filter::Bicubic(_) => 2.0 * axes.major,
+        Filter::Nearest => major,
+        Filter::Bilinear | Filter::Bicubic(_) => 2.0 * major,
     };
-    let aspect = axes.anisotropy();
     // Nearly round: one probe errs less than two.
     let needed = if aspect < 1.6 {
         (1.5 * aspect - 0.8).max(1.0)
@@ -257,15 +277,58 @@ fn one_probe_until(magnify: Filter) -> f32 {
 /// `texrender frontier`, for 1 to 16 probes and for every texture there; the error is flat from 0.3 to 0.6.
 const CUT_SHARPENING: f32 = 0.4;
 
-/// What λ is lowered by: in proportion to the octaves of aspect that are cut, up to one.
-fn sharpening(axes: &AxisLengths, eta: f32, rule: LodRule) -> f32 {
-    match rule {
-        LodRule::Exact => {
-            let cut = axes.anisotropy() / eta;
-            CUT_SHARPENING * libm::log2f(cut).clamp(0.0, 1.0)
-        }
-        LodRule::MaxLength => 0.0,
+/// The octaves of aspect that are cut, up to one: λ is lowered in proportion.
+#[inline]
+fn cut_octaves(cut: f32, log2: impl Fn(f32) -> f32) -> f32 {
+    // An octave and more is one, and none is none: no logarithm for either.
+    if cut >= 2.0 {
+        1.0
+    } else if cut <= 1.0 {
+        0.0
+    } else {
+        log2(cut).clamp(0.0, 1.0)
     }
+}
+
+/// As the plan says, with nothing but 8-bit texels; `None` where a level or a place calls for floating point.
+#[inline]
+fn in_integers(pyramid: &Pyramid, state: &SamplerState, plan: &Plan, st: DVec2) -> Option<Vec4> {
+    let in_range = matches!(pyramid.level(0).texels(), Texels::U8(_))
+        && !state.address.modes.contains(&AddressMode::ClampToBorder);
+    if !in_range {
+        return None;
+    }
+    let levels = plan.levels;
+    if let Some(probes) = plan.probes {
+        return line_in_integers(pyramid, state, levels, probes, st);
+    }
+    let at = |level| sampler::bilinear_fixed(pyramid.level(level), state.address, st);
+    let fine = at(levels.fine);
+    if levels.fraction == 0.0 {
+        return Some(fine);
+    }
+    Some(fine + (at(levels.fine + 1) - fine) * levels.fraction)
+}
+
+/// The whole line of probes in integers; `None` where a level or a place calls for floating point.
+fn line_in_integers(
+    pyramid: &Pyramid,
+    state: &SamplerState,
+    levels: Levels,
+    probes: Probes,
+    st: DVec2,
+) -> Option<Vec4> {
+    let mean = |level| FixedMean::of(pyramid.level(level), state.address.modes);
+    let Levels { fine, fraction } = levels;
+    if fraction == 0.0 {
+        let mut means = [mean(fine)?];
+        probes.add_to(&mut means, st)?;
+        return Some(means[0].mean());
+    }
+    let mut means = [mean(fine)?, mean(fine + 1)?];
+    probes.add_to(&mut means, st)?;
+    let [fine, coarse] = [means[0].mean(), means[1].mean()];
+    Some(fine + (coarse - fine) * fraction)
 }
 
 #[inline]

@@ -96,26 +96,6 @@ pub(crate) struct CubicTaps {
     pub(crate) weights: [f64; 4],
 }
 
-/// Fractional bits of a fixed-point weight.
-pub(crate) const FIXED_BITS: u32 = 12;
-const FIXED_ONE: f64 = (1 << FIXED_BITS) as f64;
-
-/// As [`Taps`], in integers, `near` the left or upper one.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct FixedTaps {
-    pub(crate) near: u32,
-    pub(crate) far: u32,
-    /// Weight of `far` in units of 2⁻¹², below 1.
-    pub(crate) far_weight: u32,
-}
-
-impl FixedTaps {
-    #[inline(always)]
-    pub(crate) fn reads_border(self) -> bool {
-        self.near == OUTSIDE || self.far == OUTSIDE
-    }
-}
-
 impl Taps {
     #[inline(always)]
     pub(crate) fn reads_border(self) -> bool {
@@ -207,42 +187,6 @@ impl AddressMode {
         }
     }
 
-    /// As [`AddressMode::linear_taps`], the position rounded to 2⁻¹² texel.
-    #[inline(always)]
-    #[allow(
-        clippy::cast_possible_truncation,
-        reason = "positions lie within two textures, and rounding is the purpose"
-    )]
-    pub(crate) fn fixed_taps(self, coordinate: f64, size: u32) -> FixedTaps {
-        let reduced = match self {
-            Self::Repeat if coordinate.abs() < FLOOR_BELOW => coordinate - floor_small(coordinate),
-            Self::MirrorRepeat if coordinate.abs() < FLOOR_BELOW => {
-                coordinate - 2.0 * floor_small(coordinate * 0.5)
-            }
-            Self::Repeat | Self::MirrorRepeat => 0.0,
-            _ if coordinate.is_nan() => 0.0,
-            _ => coordinate.clamp(-2.0, 2.0),
-        };
-        // The half texel is taken off and the half unit of rounding is put on in the same units of 2⁻¹²; the offset
-        // of two textures keeps the cast above zero, where it is the floor.
-        let textures = f64::from(size) * FIXED_ONE;
-        let position = (reduced * textures + (2.0 * textures - 0.5 * FIXED_ONE + 0.5)) as i64;
-        let left = (position >> FIXED_BITS) - 2 * i64::from(size);
-        let far_weight = (position & ((1 << FIXED_BITS) - 1)) as u32;
-        let (near, far) = match u32::try_from(left) {
-            Ok(inside) if inside < size - 1 => (inside, inside + 1),
-            _ => (
-                self.resolve_or_outside(left, size),
-                self.resolve_or_outside(left + 1, size),
-            ),
-        };
-        FixedTaps {
-            near,
-            far: if far_weight == 0 { near } else { far },
-            far_weight,
-        }
-    }
-
     #[inline]
     fn resolve_or_outside(self, index: i64, size: u32) -> u32 {
         self.resolve(index, size).unwrap_or(OUTSIDE)
@@ -264,16 +208,19 @@ impl AddressMode {
     }
 }
 
-/// x − ⌊x⌋ in units of 2⁻⁶¹, never a whole one. 0 for infinities and NaN.
+/// ⌊(x − ⌊x⌋)·2⁶¹⌋, never a whole one. 0 for infinities and NaN.
 #[inline]
 #[allow(
     clippy::cast_possible_truncation,
-    reason = "0 ≤ x − ⌊x⌋ ≤ 1, where truncation is the floor"
+    reason = "0 ≤ x − ⌊x⌋ < 1, where truncation is the floor"
 )]
 fn fixed_fraction(x: f64) -> i64 {
-    if x.abs() < FLOOR_BELOW {
-        // x − ⌊x⌋ rounds to 1 just below an integer; there the last position below it is meant.
-        (((x - floor_small(x)) * ONE as f64) as i64).min(ONE - 1)
+    if x.abs() <= 2.0 {
+        // In integers: between −½ and 0 the f64 difference would round, and could round into the next texel.
+        fixed(x) & (ONE - 1)
+    } else if x.abs() < FLOOR_BELOW {
+        // Exact: x and its floor are multiples of one step, and their difference is less than x.
+        ((x - floor_small(x)) * ONE as f64) as i64
     } else {
         0
     }
@@ -352,6 +299,12 @@ mod tests {
     fn a_third_as_f64_lies_in_texel_zero_of_three() {
         // 3 · fl(1/3) rounds to 1 in f64, though the exact product is below it.
         assert_eq!(AddressMode::Repeat.nearest_tap(1.0 / 3.0, 3), 0);
+    }
+
+    #[test]
+    fn minus_three_sevenths_lies_in_texel_four_of_seven() {
+        // −3/7 as f64 is a little greater; 1 − 3/7 rounds down in f64, into texel 3.
+        assert_eq!(AddressMode::Repeat.nearest_tap(-3.0 / 7.0, 7), 4);
     }
 
     #[test]

@@ -33,9 +33,10 @@
 //!
 //! # Between texels: [`Filter`]
 //! [`nearest`] takes the containing texel, [`bilinear`] blends four, [`bicubic`] sixteen; [`sample`] chooses by
-//! value. [`bilinear_fixed`] filters 8-bit texels in integers where [`Precision`] asks for it. [`compare`] filters
-//! comparisons of depths; [`pick`] reads one texel, right on average. Filtered colour that belongs to alpha should
-//! be premultiplied: [`Texture::premultiplied`] before, [`unpremultiply`] after.
+//! value. [`bilinear_fixed`] filters 8-bit texels in integers where [`Precision`] asks for it, and [`FixedMean`] a line
+//! of them, at [`FixedSt`]s. [`compare`] filters comparisons of depths; [`pick`] reads one texel, right on average.
+//! Filtered colour that belongs to alpha should be premultiplied: [`Texture::premultiplied`] before,
+//! [`unpremultiply`] after.
 //!
 //! # Patterns in space: [`solid`]
 //! Checkers, stripes, grids, noise, marble, wood, stone and clouds, filtered over the pixel's box.
@@ -55,7 +56,7 @@
 //! | [`bilinear`] | [`BILINEAR_MAX_ERROR_ULPS`] ulp of the largest texel read | `tests/properties/bilinear.rs` |
 //! | envelope, constants | exact | `tests/properties/bilinear.rs` |
 //! | [`bilinear_codes`], 8 bit | exactly rounded | `tests/properties/codes.rs` |
-//! | [`bilinear_fixed`], 8 bit | [`BILINEAR_FIXED_MAX_ERROR`] | `tests/properties/fixed.rs` |
+//! | [`bilinear_fixed`], [`FixedMean`], 8 bit | [`BILINEAR_FIXED_MAX_ERROR`] | `tests/properties/fixed.rs` |
 //! | [`solid`] checkers, stripes, grids over a box | 1e-6 | `tests/properties/solid_regular.rs` |
 //! | [`bicubic`] | [`BICUBIC_MAX_ERROR_ULPS`] ulp of the largest texel read | `tests/properties/bicubic.rs` |
 //! | [`tile::make_tileable`] | mean 3 % of the range, deviation 10 % | `tests/properties/tile.rs` |
@@ -82,6 +83,7 @@ mod error;
 #[cfg(feature = "exr")]
 mod exr;
 mod filter;
+mod fixed_st;
 mod format;
 #[cfg(feature = "image")]
 mod image;
@@ -100,8 +102,9 @@ pub use compare::{Compare, compare};
 pub use error::Error;
 pub use filter::{
     BICUBIC_MAX_ERROR_ULPS, BILINEAR_FIXED_MAX_ERROR, BILINEAR_MAX_ERROR_ULPS, Cubic, Filter,
-    Precision, bicubic, bilinear, bilinear_codes, bilinear_fixed, nearest, pick, sample,
+    FixedMean, Precision, bicubic, bilinear, bilinear_codes, bilinear_fixed, nearest, pick, sample,
 };
+pub use fixed_st::FixedSt;
 pub use format::{AlphaMode, Component, Format, Texels, Transfer};
 pub use non_finite::NonFinite;
 pub use texture::Texture;

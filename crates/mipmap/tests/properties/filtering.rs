@@ -6,7 +6,7 @@ use mipmap::{
     sample, sample_with_lod,
 };
 use proptest::prelude::*;
-use sampler::{AddressMode, Filter, Precision, Texels, Transfer};
+use sampler::{AddressMode, BILINEAR_FIXED_MAX_ERROR, Filter, Precision, Texels, Transfer};
 
 use crate::oracle;
 use crate::strategies::{
@@ -42,6 +42,37 @@ proptest! {
         prop_assert_eq!(colour, Vec4::new(value, value, value, 1.0));
     }
 
+    /// 8-bit texels filtered in integers: a constant comes back to the bit, whatever the line of probes.
+    #[test]
+    fn constants_survive_integers(
+        size in crate::strategies::size(), code: u8, channels in 1u8..=4, srgb: bool, state in state(),
+        footprint in prop_oneof![footprint(), tame_footprint()],
+    ) {
+        let unbordered = |mode| if mode == AddressMode::ClampToBorder { AddressMode::ClampToEdge } else { mode };
+        let state = fixed(SamplerState { address: state.address.modes.map(unbordered).into(), ..state });
+        let transfer = if srgb { Transfer::Srgb } else { Transfer::Linear };
+        let texels = Texels::U8(vec![code; (size.x * size.y * u32::from(channels)) as usize]);
+        let pyramid = Pyramid::build(made(size, channels, transfer, texels), Content::Data).unwrap();
+        let expected = pyramid.level(0).fetch(UVec2::ZERO);
+        let colour = sample(&pyramid, &state, &footprint);
+        // Decoded sRGB colour is rounded to 16 bits first.
+        let allowed = if srgb { 0.5 / 65535.0 + 1e-7 } else { 0.0 };
+        prop_assert!((colour - expected).abs().max_element() <= allowed, "{colour} {expected}");
+    }
+
+    /// Integers are an approximation of the exact path, by the bound of one lookup and of the logarithm.
+    #[test]
+    fn integers_stay_near_the_exact_path(
+        texture in byte_texture(), state in state(), footprint in prop_oneof![footprint(), tame_footprint()],
+    ) {
+        let pyramid = Pyramid::build(texture, Content::Colour).unwrap();
+        let exact = sample(&pyramid, &SamplerState { precision: Precision::Exact, ..state }, &footprint);
+        let colour = sample(&pyramid, &fixed(state), &footprint);
+        let error = (colour - exact).abs().max_element();
+        // λ is off by 1e-5 at most, times a difference of levels of at most 1, as are all else's rest.
+        prop_assert!(error <= BILINEAR_FIXED_MAX_ERROR + 2e-5, "{error}: {colour} {exact}");
+    }
+
     /// The probe line and the levels shift with the texture: a whole repeat changes nothing.
     #[test]
     fn repeating_textures_repeat(footprint in tame_footprint(), shift in -3i32..4) {
@@ -71,13 +102,36 @@ fn elliptic(st: DVec2, turn: f64, major: f64, minor: f64, side: f64) -> Footprin
     }
 }
 
+/// The same noise in 8 bits, which [`Precision::Fixed`] filters in integers.
+fn noise_u8(side: u32) -> Pyramid {
+    let mut row = vec![0.0; side as usize];
+    let noise = noise(side);
+    let texels = (0..side).flat_map(|j| {
+        noise.level(0).decode_row(j, &mut row);
+        row.iter()
+            .map(|value| (value * 255.0).round() as u8)
+            .collect::<Vec<_>>()
+    });
+    let texels = Texels::U8(texels.collect());
+    Pyramid::build(
+        made(UVec2::splat(side), 1, Transfer::Linear, texels),
+        Content::Colour,
+    )
+    .unwrap()
+}
+
 /// Walks `count` steps and checks that no step moves the colour by more than one code.
 fn assert_continuous(what: &str, count: u32, at: impl Fn(f64) -> Footprint) {
-    let pyramid = noise(64);
+    let [floats, codes] = [noise(64), noise_u8(64)];
     for (filter, lookup) in continuous_filters() {
-        let mut last = lookup(&pyramid, &at(0.0)).x;
+        let pyramid = if filter.ends_with("integers") {
+            &codes
+        } else {
+            &floats
+        };
+        let mut last = lookup(pyramid, &at(0.0)).x;
         for k in 1..=count {
-            let next = lookup(&pyramid, &at(f64::from(k))).x;
+            let next = lookup(pyramid, &at(f64::from(k))).x;
             assert!(
                 (next - last).abs() <= MAX_STEP,
                 "{filter}, {what}: step {k} jumps {}",
@@ -88,10 +142,17 @@ fn assert_continuous(what: &str, count: u32, at: impl Fn(f64) -> Footprint) {
     }
 }
 
+fn fixed(state: SamplerState) -> SamplerState {
+    SamplerState {
+        precision: Precision::Fixed,
+        ..state
+    }
+}
+
 type Lookup = fn(&Pyramid, &Footprint) -> Vec4;
 
 /// The filters that promise to be continuous.
-fn continuous_filters() -> [(&'static str, Lookup); 6] {
+fn continuous_filters() -> [(&'static str, Lookup); 9] {
     const REPEAT: [AddressMode; 2] = [AddressMode::Repeat; 2];
     [
         ("probes", |p, f| sample(p, &SamplerState::default(), f)),
@@ -108,6 +169,23 @@ fn continuous_filters() -> [(&'static str, Lookup); 6] {
                 ..SamplerState::default()
             };
             sample(p, &state, f)
+        }),
+        ("probes in integers", |p, f| {
+            sample(p, &fixed(SamplerState::default()), f)
+        }),
+        ("trilinear in integers", |p, f| {
+            let state = SamplerState {
+                max_anisotropy: 1.0,
+                ..SamplerState::default()
+            };
+            sample(p, &fixed(state), f)
+        }),
+        ("Gaussian probes in integers", |p, f| {
+            let state = SamplerState {
+                probe_weights: ProbeWeights::Gaussian,
+                ..SamplerState::default()
+            };
+            sample(p, &fixed(state), f)
         }),
         ("fast ewa", |p, f| ewa(p, REPEAT, EwaTier::Fast, f)),
         ("standard ewa", |p, f| ewa(p, REPEAT, EwaTier::Standard, f)),

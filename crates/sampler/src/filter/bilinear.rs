@@ -88,13 +88,16 @@ fn blend_u8<const CHANNELS: usize>(
     };
     let (top_near, top_far) = (texel(s.near, t.near), texel(s.far, t.near));
     let (low_near, low_far) = (texel(s.near, t.far), texel(s.far, t.far));
-    expand(CHANNELS, |channel| {
+    // A loop, because a closure for each channel would be a call for each.
+    let mut blended = [0.0f32; CHANNELS];
+    for (channel, blended) in blended.iter_mut().enumerate() {
         let table = tables.of_channel_u8(channel, CHANNELS);
         let value = |texel: &[u8]| table[usize::from(texel[channel])];
         let top = value(top_near) + (value(top_far) - value(top_near)) * alpha;
         let low = value(low_near) + (value(low_far) - value(low_near)) * alpha;
-        top + (low - top) * beta
-    })
+        *blended = top + (low - top) * beta;
+    }
+    expand(CHANNELS, |channel| blended[channel])
 }
 
 /// Blends in f32: enough for integer texels, whose values are already rounded to 2⁻¹⁶ or coarser.

@@ -13,7 +13,7 @@ use glam::{DVec2, Vec4};
 pub use bicubic::{BICUBIC_MAX_ERROR_ULPS, Cubic, bicubic};
 pub use bilinear::{BILINEAR_MAX_ERROR_ULPS, bilinear};
 pub use codes::bilinear_codes;
-pub use fixed::{BILINEAR_FIXED_MAX_ERROR, Precision, bilinear_fixed};
+pub use fixed::{BILINEAR_FIXED_MAX_ERROR, FixedMean, Precision, bilinear_fixed};
 pub use nearest::nearest;
 pub use pick::pick;
 pub(crate) use weights::AxisWeights;
