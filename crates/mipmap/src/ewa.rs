@@ -227,7 +227,8 @@ struct Window {
     widening: f64,
     /// Entries a unit of q.
     density: f32,
-    table: Vec<f32>,
+    /// The weight at an entry, and what is added until the next.
+    table: Vec<[f32; 2]>,
 }
 
 impl Window {
@@ -241,12 +242,13 @@ impl Window {
         let mass = 1.0 - edge - half * edge;
         let second = 1.0 - (1.0 + half) * edge - 0.5 * half * half * edge;
         let step = reach / f64::from(Self::ENTRIES);
+        let entry = |k: u16| round_to_f32((libm::exp(-0.5 * step * f64::from(k)) - edge).max(0.0));
         Self {
             reach,
             widening: mass / second,
             density: round_to_f32(1.0 / step),
-            table: (0..=Self::ENTRIES + 1)
-                .map(|k| round_to_f32((libm::exp(-0.5 * step * f64::from(k)) - edge).max(0.0)))
+            table: (0..=Self::ENTRIES)
+                .map(|k| [entry(k), entry(k + 1) - entry(k)])
                 .collect(),
         }
     }
@@ -259,9 +261,10 @@ impl Window {
     )]
     fn weight(&self, q: f32) -> f32 {
         let position = q * self.density;
-        let index = (position as usize).min(self.table.len() - 2);
+        let index = (position as u32).min(u32::from(Self::ENTRIES));
         let fraction = position - index as f32;
-        self.table[index] + (self.table[index + 1] - self.table[index]) * fraction
+        let [weight, change] = self.table[index as usize];
+        weight + change * fraction
     }
 }
 
