@@ -17,14 +17,20 @@
 //! Where the minor axis is less than a texel the tent is no Gaussian: there the reconstruction itself is averaged, on
 //! a lattice along the footprint's axes.
 
+mod ellipse;
+mod lattice;
+mod window;
+
 use std::ops::RangeInclusive;
 use std::sync::OnceLock;
 
 use glam::{DMat2, DVec2, DVec4, UVec2, Vec4};
-use sampler::{AddressMode, Addressing, Texture};
+use sampler::{AddressMode, Addressing};
 
+use self::ellipse::Ellipse;
+use self::lattice::Lattice;
+use self::window::Window;
 use crate::footprint::{AxisLengths, Footprint};
-use crate::lod::round_to_f32;
 use crate::pyramid::Pyramid;
 use crate::sample::{SamplerState, sample};
 
@@ -219,132 +225,6 @@ impl Levels<'_> {
     }
 }
 
-/// exp(−q/2) − exp(−R²/2) for q in 0..R², tabulated.
-struct Window {
-    /// R².
-    reach: f64,
-    /// What the covariance is multiplied by, so that the cut Gaussian has the wanted one.
-    widening: f64,
-    /// Entries a unit of q.
-    density: f32,
-    /// The weight at an entry, and what is added until the next.
-    table: Vec<[f32; 2]>,
-}
-
-impl Window {
-    const ENTRIES: u16 = 1024;
-
-    fn new(cut: f64) -> Self {
-        let reach = cut * cut;
-        let half = 0.5 * reach;
-        let edge = libm::exp(-half);
-        // ∫ (e⁻ᵘ − e⁻ᵁ) du and ∫ (e⁻ᵘ − e⁻ᵁ) u du over 0..U, with u = r²/2.
-        let mass = 1.0 - edge - half * edge;
-        let second = 1.0 - (1.0 + half) * edge - 0.5 * half * half * edge;
-        let step = reach / f64::from(Self::ENTRIES);
-        let entry = |k: u16| round_to_f32((libm::exp(-0.5 * step * f64::from(k)) - edge).max(0.0));
-        Self {
-            reach,
-            widening: mass / second,
-            density: round_to_f32(1.0 / step),
-            table: (0..=Self::ENTRIES)
-                .map(|k| [entry(k), entry(k + 1) - entry(k)])
-                .collect(),
-        }
-    }
-
-    /// The weight at q ≥ 0, interpolated: within 8e-6 (the square of a step of 16/1024, times ⅛ of f″ = ¼).
-    #[inline(always)]
-    #[allow(
-        clippy::cast_possible_truncation,
-        reason = "q ≥ 0, and truncation is the floor of it"
-    )]
-    fn weight(&self, q: f32) -> f32 {
-        let position = q * self.density;
-        let index = (position as u32).min(u32::from(Self::ENTRIES));
-        let fraction = position - index as f32;
-        let [weight, change] = self.table[index as usize];
-        weight + change * fraction
-    }
-}
-
-/// dᵀ W⁻¹ d < R².
-struct Ellipse<'a> {
-    /// q = a x² + 2 b x y + c y².
-    a: f64,
-    b: f64,
-    c: f64,
-    /// Greatest |y| inside.
-    height: f64,
-    window: &'a Window,
-}
-
-impl<'a> Ellipse<'a> {
-    fn new(w: DMat2, window: &'a Window) -> Self {
-        let inverse = w.inverse();
-        Self {
-            a: inverse.x_axis.x,
-            b: inverse.x_axis.y,
-            c: inverse.y_axis.y,
-            height: (window.reach * w.y_axis.y).sqrt(),
-            window,
-        }
-    }
-
-    /// The weighted mean of the texels around `centre`, in texel space with centres at integers.
-    fn mean(&self, texture: &Texture, address: &Addressing<2>, centre: DVec2) -> DVec4 {
-        let origin = texture
-            .weighted_row(
-                address,
-                floor(centre.x + 0.5),
-                floor(centre.y + 0.5),
-                &[1.0],
-                Vec4::ZERO,
-            )
-            .as_vec4();
-        let mut weights = [0.0f32; CHUNK];
-        let (mut sum, mut total) = (DVec4::ZERO, 0.0f64);
-        for j in inside(centre.y, self.height) {
-            // The chord: a x² + 2 b y x + c y² = R².
-            let y = j as f64 - centre.y;
-            let chord = self.window.reach - (self.c - self.b * self.b / self.a) * y * y;
-            if chord <= 0.0 {
-                continue;
-            }
-            let columns = inside(centre.x - self.b * y / self.a, (chord / self.a).sqrt());
-            for first in columns.clone().step_by(CHUNK) {
-                let count = (columns.end() + 1 - first).min(CHUNK as i64);
-                let weights = &mut weights[..usize::try_from(count).unwrap_or(0)];
-                total += self.fill(weights, first as f64 - centre.x, y);
-                sum += texture.weighted_row(address, first, j, weights, origin);
-            }
-        }
-        if total > 0.0 {
-            origin.as_dvec4() + sum / total
-        } else {
-            origin.as_dvec4()
-        }
-    }
-
-    /// Weights of the texels from (x, y) on to the right; returns their sum.
-    fn fill(&self, weights: &mut [f32], x: f64, y: f64) -> f64 {
-        let mut q = (self.a * x + 2.0 * self.b * y) * x + self.c * y * y;
-        let mut step = self.a * (2.0 * x + 1.0) + 2.0 * self.b * y;
-        let mut total = 0.0f32;
-        for weight in weights.iter_mut() {
-            // Rounding may take q below 0 at the centre.
-            *weight = self.window.weight(round_to_f32(q).max(0.0));
-            total += *weight;
-            q += step;
-            step += 2.0 * self.a;
-        }
-        f64::from(total)
-    }
-}
-
-/// Texels of a row that are weighed at a time.
-const CHUNK: usize = 64;
-
 /// A coordinate of the same texels where integers and their neighbours are exact: one period, or so far outside that
 /// nothing changes any more. Odd ones as in [`sampler::bilinear`].
 fn nearby(mode: AddressMode, coordinate: f64) -> f64 {
@@ -371,57 +251,4 @@ fn inside(centre: f64, reach: f64) -> RangeInclusive<i64> {
 fn floor(x: f64) -> i64 {
     let truncated = x as i64;
     truncated - i64::from(truncated as f64 > x)
-}
-
-/// The Gaussian over the bilinear reconstruction, at points along the axes of a footprint: σ apart, and not farther
-/// apart than a texel.
-struct Lattice {
-    /// From one point to the next, in st, and in standard deviations.
-    along: DVec2,
-    apart: f64,
-    across: DVec2,
-    /// Points on each side of the middle.
-    side: i32,
-    window: &'static Window,
-    cut: f64,
-}
-
-impl Lattice {
-    #[allow(
-        clippy::cast_possible_truncation,
-        reason = "the aspect is bounded by the tier, and truncation is the floor"
-    )]
-    fn new(lengths: &AxisLengths, minor: f32, tier: EwaTier) -> Self {
-        let window = tier.window();
-        let [along, across] = lengths.axes(minor);
-        let sigma = SIGMA * window.widening.sqrt();
-        let apart = (1.0 / (f64::from(lengths.major) * sigma)).min(1.0);
-        Self {
-            along: along * (sigma * apart),
-            apart,
-            across: across * sigma,
-            side: (tier.cut() / apart) as i32,
-            window,
-            cut: tier.cut(),
-        }
-    }
-
-    fn mean(&self, texture: &Texture, address: &Addressing<2>, st: DVec2) -> DVec4 {
-        let at = |st| sampler::bilinear(texture, *address, st).as_dvec4();
-        let middle = at(st);
-        let (mut sum, mut total) = (DVec4::ZERO, 0.0);
-        let rows = inside(0.0, self.cut);
-        for j in rows {
-            for i in -self.side..=self.side {
-                let [x, y] = [f64::from(i) * self.apart, j as f64];
-                let q = x * x + y * y;
-                if q < self.window.reach {
-                    let weight = f64::from(self.window.weight(round_to_f32(q)));
-                    sum += (at(st + self.along * f64::from(i) + self.across * y) - middle) * weight;
-                    total += weight;
-                }
-            }
-        }
-        middle + sum / total
-    }
 }
