@@ -109,6 +109,10 @@ impl Default for SamplerState {
 /// across it. [`LodRule::MaxLength`] has no such term: it is the textbook's. The result is continuous in every input
 /// wherever magnify, minify and mip are linear.
 ///
+/// Target pixel kernel: of one lookup of level 0, the point; of one probe, a square along the texture's axes, as wide
+/// as the footprint is long; of a line of probes, the rectangle that the footprint's two axes span, or by
+/// [`ProbeWeights::Gaussian`] the Gaussian of σ = ½ pixel through the footprint.
+///
 /// Where λ reaches a last level of one texel that is not bordered, that texel is fetched once, whatever η.
 ///
 /// Defined for every input: st as [`sampler::sample`]; a derivative that is infinite or NaN selects the coarsest
