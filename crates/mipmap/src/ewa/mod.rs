@@ -43,7 +43,7 @@ const SIGMA: f64 = 0.5;
 /// projected by each pixel's footprint; `texrender frontier` measures them beside the times.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum EwaTier {
-    /// One level coarser than the minor axis asks for, cut at 3 σ: within 0.010.
+    /// One level coarser than the minor axis asks for, cut at 3 σ: within 0.013.
     Fast,
     /// The level whose texel is the minor axis, cut at 3.5 σ: within 0.005.
     #[default]

@@ -59,7 +59,7 @@ fn eight_bit_encoding_is_exactly_rounded_over_a_sweep_of_all_floats() {
 
 /// `cargo test --release -p texrender-sampler -- --ignored`: all 2³² inputs, half a minute.
 #[test]
-#[ignore = "takes minutes; the strided sweep stands in"]
+#[ignore = "takes half a minute in a release build; the strided sweep stands in"]
 fn eight_bit_encoding_is_exactly_rounded_for_every_float() {
     check_u8_encoder(1);
 }
