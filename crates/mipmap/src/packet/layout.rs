@@ -101,12 +101,15 @@ impl PackedPyramid {
 
 #[inline(always)]
 fn reduced<S: Simd>(mode: AddressMode, coordinate: [f64x8<S>; 2]) -> f32x16<S> {
-    let [low, high] = match mode {
-        AddressMode::Repeat => coordinate.map(|x| x - x.floor()),
-        AddressMode::MirrorRepeat => coordinate.map(|x| x - (x * 0.5).floor() * 2.0),
-        _ => coordinate,
-    };
-    low.narrow(high)
+    let [low, high] = coordinate;
+    match mode {
+        AddressMode::Repeat => (low - low.floor()).narrow(high - high.floor()),
+        AddressMode::MirrorRepeat => {
+            let (turns, more) = ((low * 0.5).floor() * 2.0, (high * 0.5).floor() * 2.0);
+            (low - turns).narrow(high - more)
+        }
+        _ => low.narrow(high),
+    }
 }
 
 /// The row of a level k ≥ 1 on the sheet, in a texture of `height` rows: ⌊h − h/2ᵏ⁻¹⌋ + 4(k − 1), in f32.
@@ -137,7 +140,8 @@ impl PackedPyramid {
     /// Where each lane's level lies; whole numbers below [`Self::levels`].
     #[inline(always)]
     pub(super) fn placed<S: Simd>(&self, simd: S, level: f32x16<S>) -> Placed<S> {
-        let [w, h] = [self.size.x as f32, self.size.y as f32].map(|side| f32x16::splat(simd, side));
+        let w = f32x16::splat(simd, self.size.x as f32);
+        let h = f32x16::splat(simd, self.size.y as f32);
         let one = f32x16::splat(simd, 1.0);
         if self.levels == 1 {
             return Placed { width: w, height: h, column: one, row: one };

@@ -5,7 +5,7 @@ use fearless_simd::{Simd, f32x16, mask32x16, u32x16};
 use sampler::Filter;
 use sampler::packet::{Share, Sums, unit};
 
-use super::plan::{Line, Plan};
+use super::plan::Plan;
 use super::{PackedPyramid, PacketFootprint};
 use crate::sample::{MipFilter, SamplerState};
 
@@ -19,20 +19,36 @@ pub(super) fn filtered<S: Simd, A: Sums<S>>(
     footprint: &PacketFootprint<S>,
 ) -> [f32x16<S>; 4] {
     let plan = Plan::of(simd, texture, state, footprint);
-    let nearest = nearest_lanes(simd, state, plan.minified);
+    let lookup = Lookup {
+        simd,
+        texture,
+        texels,
+        nearest: nearest_lanes(simd, state, plan.minified),
+    };
+    let zero = f32x16::splat(simd, 0.0);
     let one = f32x16::splat(simd, 1.0);
+    let two_levels = plan.fraction.simd_gt(zero).any_true();
     let mut sums = A::zero(simd);
-    let mut lookup = Lookup { simd, texture, texels, sums: &mut sums, nearest };
-    match plan.line {
-        None => {
-            lookup.levels(&plan, footprint.s, footprint.t, one);
-            sums.texels(simd, one)
+    // A line's probes stand on either side of the middle: pair 0 before and after it, pair 1, and so on.
+    let probes = plan.line.map_or(1, |line| 2 * line.pairs);
+    for probe in 0..probes {
+        let (s, t, weight) = match &plan.line {
+            None => (footprint.s, footprint.t, one),
+            Some(line) => line.probe(simd, probe, footprint),
+        };
+        let place = lookup.place(s, t);
+        let coarse = weight * plan.fraction;
+        let mut reads = [(plan.fine, weight - coarse), (plan.fine + 1.0, coarse)];
+        if two_levels {
+            // Of weight 0 the level beside the last would be.
+            let last = f32x16::splat(simd, (texture.levels() - 1) as f32);
+            reads[1].0 = reads[1].0.min(last);
         }
-        Some(line) => {
-            lookup.line(&plan, &line, footprint);
-            sums.texels(simd, one / line.total)
+        for (level, weight) in &reads[..1 + usize::from(two_levels)] {
+            lookup.level(&mut sums, *level, place, *weight);
         }
     }
+    sums.texels(simd, plan.line.map_or(one, |line| one / line.total))
 }
 
 /// Lanes that read one texel of a level; none where no filter does.
@@ -51,68 +67,55 @@ fn nearest_lanes<S: Simd>(
     }
 }
 
-struct Lookup<'a, S: Simd, A: Sums<S>> {
+struct Lookup<'a, S: Simd, T> {
     simd: S,
     texture: &'a PackedPyramid,
-    texels: &'a [A::Texel],
-    sums: &'a mut A,
+    texels: &'a [T],
     nearest: Option<mask32x16<S>>,
 }
 
-impl<S: Simd, A: Sums<S>> Lookup<'_, S, A> {
-    /// A line of probes, pair by pair from the middle.
+impl<S: Simd, T> Lookup<'_, S, T> {
+    /// Where each lane stands in the texture.
     #[inline(always)]
-    fn line(&mut self, plan: &Plan<S>, line: &Line<S>, footprint: &PacketFootprint<S>) {
-        for k in 0..line.pairs {
-            let (cells, weight) = line.pair(self.simd, k);
-            let (s, t) = (line.step_s * cells, line.step_t * cells);
-            self.levels(plan, footprint.s - s, footprint.t - t, weight);
-            self.levels(plan, footprint.s + s, footprint.t + t, weight);
-        }
-    }
-
-    /// One probe of each lane: its two levels.
-    #[inline(always)]
-    fn levels(&mut self, plan: &Plan<S>, s: f32x16<S>, t: f32x16<S>, weight: f32x16<S>) {
+    fn place(&self, s: f32x16<S>, t: f32x16<S>) -> [f32x16<S>; 2] {
         let [s_mode, t_mode] = self.texture.modes();
-        let place = [unit(self.simd, s_mode, s), unit(self.simd, t_mode, t)];
-        let zero = f32x16::splat(self.simd, 0.0);
-        let coarser = plan.fraction.simd_gt(zero);
-        if !coarser.any_true() {
-            return self.level(plan.fine, place, weight);
-        }
-        let coarse = weight * plan.fraction;
-        self.level(plan.fine, place, weight - coarse);
-        let next = coarser.select(plan.fine + 1.0, plan.fine);
-        self.level(next, place, coarse);
+        [unit(self.simd, s_mode, s), unit(self.simd, t_mode, t)]
     }
 
+    /// Adds one level's texels at each lane's place.
     #[inline(always)]
-    fn level(&mut self, level: f32x16<S>, place: [f32x16<S>; 2], weight: f32x16<S>) {
+    fn level<A: Sums<S, Texel = T>>(
+        &self,
+        sums: &mut A,
+        level: f32x16<S>,
+        place: [f32x16<S>; 2],
+        weight: f32x16<S>,
+    ) {
         let placed = self.texture.placed(self.simd, level);
         let (column, right) = self.texel(place[0], placed.width);
         let (row, lower) = self.texel(place[1], placed.height);
         let share = Share { right, lower, weight };
         let stride = self.texture.sheet().stride();
         let offsets = offset(stride, placed.column + column, placed.row + row);
-        self.sums.add(self.simd, self.texels, stride as usize, offsets, &share);
+        sums.add(self.simd, self.texels, stride as usize, offsets, &share);
     }
 
     /// The first of two neighbouring texels on an axis of `size`, −1 to size − 1, and the weight of the second.
     #[inline(always)]
     fn texel(&self, place: f32x16<S>, size: f32x16<S>) -> (f32x16<S>, f32x16<S>) {
         let zero = f32x16::splat(self.simd, 0.0);
-        let position = place * size;
-        let minus_one = f32x16::splat(self.simd, -1.0);
-        let last = |first: f32x16<S>| first.min(size - 1.0);
-        let Some(nearest) = self.nearest else {
-            let from_centre = (position - 0.5).max(minus_one);
-            let first = last(from_centre.floor());
-            return (first, (from_centre - first).min(f32x16::splat(self.simd, 1.0)));
+        let half = f32x16::splat(self.simd, 0.5);
+        let to_centre = match self.nearest {
+            Some(nearest) => nearest.select(zero, half),
+            None => half,
         };
-        let from_centre = (position - nearest.select(zero, f32x16::splat(self.simd, 0.5))).max(minus_one);
-        let first = last(from_centre.floor());
-        (first, nearest.select(zero, (from_centre - first).min(f32x16::splat(self.simd, 1.0))))
+        let from_centre = (place * size - to_centre).max(f32x16::splat(self.simd, -1.0));
+        let first = from_centre.floor().min(size - 1.0);
+        let second = (from_centre - first).min(f32x16::splat(self.simd, 1.0));
+        match self.nearest {
+            Some(nearest) => (first, nearest.select(zero, second)),
+            None => (first, second),
+        }
     }
 }
 
@@ -140,10 +143,14 @@ pub(super) fn picked<S: Simd>(
     let plan = Plan::of(simd, texture, state, footprint);
     let placed = texture.placed(simd, plan.fine);
     let [s_mode, t_mode] = texture.modes();
-    let texel = |place: f32x16<S>, size: f32x16<S>| (place * size).floor().min(size - 1.0);
-    let column = texel(unit(simd, s_mode, footprint.s), placed.width);
-    let row = texel(unit(simd, t_mode, footprint.t), placed.height);
+    let (s, t) = (unit(simd, s_mode, footprint.s), unit(simd, t_mode, footprint.t));
+    let column = (s * placed.width).floor().min(placed.width - 1.0);
+    let row = (t * placed.height).floor().min(placed.height - 1.0);
     let stride = texture.sheet().stride();
     let offsets: [u32; 16] = offset(stride, placed.column + column, placed.row + row).to_array();
-    Some(offsets.map(|offset| texels[offset as usize]).simd_into(simd))
+    let mut codes = [0; 16];
+    for (code, offset) in codes.iter_mut().zip(offsets) {
+        *code = texels[offset as usize];
+    }
+    Some(codes.simd_into(simd))
 }

@@ -101,15 +101,18 @@ pub fn sample_codes<S: Simd>(
     {
         return codes;
     }
-    let codes = colours(simd, texture, state, footprint).map(|texels| {
-        let zero = f32x16::splat(simd, 0.0);
-        let one = f32x16::splat(simd, 1.0);
-        u32x16::truncate_from(texels.max(zero).min(one) * 255.0 + 0.5)
-    });
-    let [a, b, c, d] = codes;
-    let (low, high): (u16x32<S>, u16x32<S>) = (a.relaxed_narrow(b), c.relaxed_narrow(d));
+    let [a, b, c, d] = colours(simd, texture, state, footprint);
+    let low: u16x32<S> = codes(simd, a).relaxed_narrow(codes(simd, b));
+    let high: u16x32<S> = codes(simd, c).relaxed_narrow(codes(simd, d));
     let bytes: u8x64<S> = low.relaxed_narrow(high);
     bytes.bitcast()
+}
+
+/// 0..=1 to the nearest of 0..=255.
+#[inline(always)]
+fn codes<S: Simd>(simd: S, channel: f32x16<S>) -> u32x16<S> {
+    let held = channel.max(f32x16::splat(simd, 0.0)).min(f32x16::splat(simd, 1.0));
+    u32x16::truncate_from(held * 255.0 + 0.5)
 }
 
 /// The colours, interleaved.
@@ -120,15 +123,19 @@ fn colours<S: Simd>(
     state: &SamplerState,
     footprint: &PacketFootprint<S>,
 ) -> [f32x16<S>; 4] {
+    // One function a kind of texel, however many callers: inlined it is 10 KiB of code each.
     match texture.sheet().texels() {
-        SheetTexels::Codes8(texels) => {
-            lookup::filtered::<S, Sums8<S>>(simd, texture, texels, state, footprint)
-        }
-        SheetTexels::Codes16(texels) => {
-            lookup::filtered::<S, Sums16<S>>(simd, texture, texels, state, footprint)
-        }
-        SheetTexels::Floats(texels) => {
-            lookup::filtered::<S, SumsFloat<S>>(simd, texture, texels, state, footprint)
-        }
+        SheetTexels::Codes8(texels) => simd.vectorize(
+            #[inline(always)]
+            || lookup::filtered::<S, Sums8<S>>(simd, texture, texels, state, footprint),
+        ),
+        SheetTexels::Codes16(texels) => simd.vectorize(
+            #[inline(always)]
+            || lookup::filtered::<S, Sums16<S>>(simd, texture, texels, state, footprint),
+        ),
+        SheetTexels::Floats(texels) => simd.vectorize(
+            #[inline(always)]
+            || lookup::filtered::<S, SumsFloat<S>>(simd, texture, texels, state, footprint),
+        ),
     }
 }

@@ -19,6 +19,7 @@
 //! a lookup is within [`SUMS8_MAX_ERROR`] of the exact blend. Others are blended in f32.
 
 mod axis;
+mod fetch;
 mod lanes;
 mod sheet;
 mod sums;

@@ -3,7 +3,8 @@
 use fearless_simd::prelude::*;
 use fearless_simd::{Simd, f32x16, i16x32, i32x16, u8x64, u16x32, u32x16, u64x8};
 
-use super::LANES;
+use super::fetch::Column::{Left, Right};
+use super::fetch::Quads;
 use super::lanes::{channels, repeated, repeated_floats};
 
 /// Bound of the error of one 8-bit lookup, in units of the greatest texel: four weights in units of 2⁻¹⁴, and f32.
@@ -86,16 +87,16 @@ impl<S: Simd> Sums<S> for Sums8<S> {
         offsets: u32x16<S>,
         share: &Share<S>,
     ) {
-        let [upper, lower] = integer_weights(simd, share);
+        let [upper, lower] = integer_weights(share);
         let (upper, lower) = (repeated(upper), repeated(lower));
-        let offsets: [u32; LANES] = offsets.to_array();
+        let quads = Quads::new(simd, texels, stride, offsets);
         let beside = u8x64::block_splat(BESIDE.simd_into(simd));
         for half in 0..2 {
             let mut pairs = [[0u64; 8]; 2];
             for lane in 0..8 {
-                let rows = &texels[offsets[8 * half + lane] as usize..][..stride + 2];
-                pairs[0][lane] = pair(rows[0], rows[1]);
-                pairs[1][lane] = pair(rows[stride], rows[stride + 1]);
+                let from = 8 * half + lane;
+                pairs[0][lane] = quads.upper_pair(from);
+                pairs[1][lane] = quads.lower_pair(from);
             }
             for (pairs, weights) in pairs.into_iter().zip([&upper, &lower]) {
                 let bytes: u8x64<S> = u64x8::simd_from(simd, pairs).bitcast();
@@ -114,30 +115,32 @@ impl<S: Simd> Sums<S> for Sums8<S> {
     #[inline(always)]
     fn texels(self, simd: S, scale: f32x16<S>) -> [f32x16<S>; 4] {
         let scales = repeated_floats(scale * (1.0 / (255.0 * ONE8)));
-        let at = |g: usize| f32x16::float_from(self.0[g]) * scales[g];
-        let _ = simd;
-        [at(0), at(1), at(2), at(3)]
+        let mut texels = [f32x16::splat(simd, 0.0); 4];
+        for group in 0..4 {
+            texels[group] = f32x16::float_from(self.0[group]) * scales[group];
+        }
+        texels
     }
-}
-
-#[inline(always)]
-fn pair(left: u32, right: u32) -> u64 {
-    u64::from(left) | u64::from(right) << 32
 }
 
 /// Weights of the upper and of the lower two texels in units of 1/[`ONE8`], the left one's in the low half of a lane.
 /// They add up to the lookup's weight in those units, exactly.
 #[inline(always)]
-fn integer_weights<S: Simd>(simd: S, share: &Share<S>) -> [u32x16<S>; 2] {
-    let _ = simd;
+fn integer_weights<S: Simd>(share: &Share<S>) -> [u32x16<S>; 2] {
     let all = (share.weight * ONE8).round_ties_even();
     let lower = (all * share.lower).round_ties_even();
     let upper = all - lower;
-    [upper, lower].map(|row| {
-        let right = (row * share.right).round_ties_even();
-        let left = row - right;
-        u32x16::truncate_from(left) | (u32x16::truncate_from(right) << 16)
-    })
+    [
+        left_and_right(upper, share.right),
+        left_and_right(lower, share.right),
+    ]
+}
+
+#[inline(always)]
+fn left_and_right<S: Simd>(row: f32x16<S>, right: f32x16<S>) -> u32x16<S> {
+    let right = (row * right).round_ties_even();
+    let left = row - right;
+    u32x16::truncate_from(left) | (u32x16::truncate_from(right) << 16)
 }
 
 /// Weights of the four texels: left and right of the upper row, left and right of the lower.
@@ -147,18 +150,21 @@ fn float_weights<S: Simd>(share: &Share<S>) -> [[f32x16<S>; 4]; 4] {
     let upper = share.weight - lower;
     let (upper_right, lower_right) = (upper * share.right, lower * share.right);
     [
-        upper - upper_right,
-        upper_right,
-        lower - lower_right,
-        lower_right,
+        repeated_floats(upper - upper_right),
+        repeated_floats(upper_right),
+        repeated_floats(lower - lower_right),
+        repeated_floats(lower_right),
     ]
-    .map(repeated_floats)
 }
 
-/// The four texels of 2×2, as offsets from the first.
+/// Interleaved sums, each lane's times its scale.
 #[inline(always)]
-fn taps(stride: usize) -> [usize; 4] {
-    [0, 1, stride, stride + 1]
+fn scaled<S: Simd>(mut sums: [f32x16<S>; 4], scale: f32x16<S>) -> [f32x16<S>; 4] {
+    let scales = repeated_floats(scale);
+    for group in 0..4 {
+        sums[group] = sums[group] * scales[group];
+    }
+    sums
 }
 
 impl<S: Simd> Sums<S> for Sums16<S> {
@@ -179,14 +185,15 @@ impl<S: Simd> Sums<S> for Sums16<S> {
         share: &Share<S>,
     ) {
         let weights = float_weights(share);
-        let offsets: [u32; LANES] = offsets.to_array();
+        let quads = Quads::new(simd, texels, stride, offsets);
         for half in 0..2 {
             let mut codes = [[0u64; 8]; 4];
             for lane in 0..8 {
-                let rows = &texels[offsets[8 * half + lane] as usize..][..stride + 2];
-                for (codes, tap) in codes.iter_mut().zip(taps(stride)) {
-                    codes[lane] = rows[tap];
-                }
+                let from = 8 * half + lane;
+                codes[0][lane] = quads.upper(from, Left);
+                codes[1][lane] = quads.upper(from, Right);
+                codes[2][lane] = quads.lower(from, Left);
+                codes[3][lane] = quads.lower(from, Right);
             }
             for (codes, weights) in codes.into_iter().zip(&weights) {
                 let codes: u16x32<S> = u64x8::simd_from(simd, codes).bitcast();
@@ -198,10 +205,8 @@ impl<S: Simd> Sums<S> for Sums16<S> {
     }
 
     #[inline(always)]
-    fn texels(self, simd: S, scale: f32x16<S>) -> [f32x16<S>; 4] {
-        let _ = simd;
-        let scales = repeated_floats(scale * (1.0 / 65535.0));
-        [0, 1, 2, 3].map(|g| self.0[g] * scales[g])
+    fn texels(self, _simd: S, scale: f32x16<S>) -> [f32x16<S>; 4] {
+        scaled(self.0, scale * (1.0 / 65535.0))
     }
 }
 
@@ -223,14 +228,16 @@ impl<S: Simd> Sums<S> for SumsFloat<S> {
         share: &Share<S>,
     ) {
         let weights = float_weights(share);
-        let offsets: [u32; LANES] = offsets.to_array();
+        let quads = Quads::new(simd, texels, stride, offsets);
         for group in 0..4 {
             let mut colours = [[0.0f32; 16]; 4];
             for lane in 0..4 {
-                let rows = &texels[offsets[4 * group + lane] as usize..][..stride + 2];
-                for (colours, tap) in colours.iter_mut().zip(taps(stride)) {
-                    colours[4 * lane..][..4].copy_from_slice(&rows[tap]);
-                }
+                let from = 4 * group + lane;
+                let to = 4 * lane..4 * lane + 4;
+                colours[0][to.clone()].copy_from_slice(&quads.upper(from, Left));
+                colours[1][to.clone()].copy_from_slice(&quads.upper(from, Right));
+                colours[2][to.clone()].copy_from_slice(&quads.lower(from, Left));
+                colours[3][to].copy_from_slice(&quads.lower(from, Right));
             }
             for (colours, weights) in colours.iter().zip(&weights) {
                 self.0[group] += f32x16::from_slice(simd, colours) * weights[group];
@@ -239,9 +246,7 @@ impl<S: Simd> Sums<S> for SumsFloat<S> {
     }
 
     #[inline(always)]
-    fn texels(self, simd: S, scale: f32x16<S>) -> [f32x16<S>; 4] {
-        let _ = simd;
-        let scales = repeated_floats(scale);
-        [0, 1, 2, 3].map(|g| self.0[g] * scales[g])
+    fn texels(self, _simd: S, scale: f32x16<S>) -> [f32x16<S>; 4] {
+        scaled(self.0, scale)
     }
 }
