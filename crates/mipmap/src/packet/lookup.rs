@@ -1,10 +1,11 @@
 //! The texels that a plan names, weighted and summed.
 
 use fearless_simd::prelude::*;
-use fearless_simd::{Simd, f32x16, mask32x16, u32x16};
-use sampler::Filter;
-use sampler::packet::{Share, Sums, unit};
+use fearless_simd::{Simd, f32x16, i32x16, mask32x16, u32x16};
+use sampler::packet::{ONE, Share, Sums, unit};
+use sampler::{AddressMode, Filter};
 
+use super::layout::Placed;
 use super::plan::Plan;
 use super::{PackedPyramid, PacketFootprint};
 use crate::sample::{MipFilter, SamplerState};
@@ -24,10 +25,18 @@ pub(super) fn filtered<S: Simd, A: Sums<S>>(
         texture,
         texels,
         nearest: nearest_lanes(simd, state, plan.minified),
+        bordered: texture.modes().contains(&AddressMode::ClampToBorder),
     };
     let zero = f32x16::splat(simd, 0.0);
     let one = f32x16::splat(simd, 1.0);
-    let two_levels = plan.fraction.simd_gt(zero).any_true();
+    // Beside the last level there is none; its weight is 0.
+    let last = f32x16::splat(simd, (texture.levels() - 1) as f32);
+    let levels = 1 + usize::from(plan.fraction.simd_gt(zero).any_true());
+    let fine = texture.placed(simd, plan.fine);
+    let mut placed = [fine; 2];
+    if levels == 2 {
+        placed[1] = texture.placed(simd, (plan.fine + 1.0).min(last));
+    }
     let mut sums = A::zero(simd);
     // A line's probes stand on either side of the middle: pair 0 before and after it, pair 1, and so on.
     let probes = plan.line.map_or(1, |line| 2 * line.pairs);
@@ -37,15 +46,12 @@ pub(super) fn filtered<S: Simd, A: Sums<S>>(
             Some(line) => line.probe(simd, probe, footprint),
         };
         let place = lookup.place(s, t);
-        let coarse = weight * plan.fraction;
-        let mut reads = [(plan.fine, weight - coarse), (plan.fine + 1.0, coarse)];
-        if two_levels {
-            // Of weight 0 the level beside the last would be.
-            let last = f32x16::splat(simd, (texture.levels() - 1) as f32);
-            reads[1].0 = reads[1].0.min(last);
-        }
-        for (level, weight) in &reads[..1 + usize::from(two_levels)] {
-            lookup.level(&mut sums, *level, place, *weight);
+        let units = weight * ONE as f32;
+        let all = u32x16::truncate_from(units + 0.5);
+        let coarse = u32x16::truncate_from(units * plan.fraction + 0.5);
+        lookup.level(&mut sums, &placed[0], place, all - coarse);
+        if levels == 2 {
+            lookup.level(&mut sums, &placed[1], place, coarse);
         }
     }
     sums.texels(simd, plan.line.map_or(one, |line| one / line.total))
@@ -72,6 +78,7 @@ struct Lookup<'a, S: Simd, T> {
     texture: &'a PackedPyramid,
     texels: &'a [T],
     nearest: Option<mask32x16<S>>,
+    bordered: bool,
 }
 
 impl<S: Simd, T> Lookup<'_, S, T> {
@@ -87,41 +94,45 @@ impl<S: Simd, T> Lookup<'_, S, T> {
     fn level<A: Sums<S, Texel = T>>(
         &self,
         sums: &mut A,
-        level: f32x16<S>,
+        placed: &Placed<S>,
         place: [f32x16<S>; 2],
-        weight: f32x16<S>,
+        weight: u32x16<S>,
     ) {
-        let placed = self.texture.placed(self.simd, level);
         let (column, right) = self.texel(place[0], placed.width);
         let (row, lower) = self.texel(place[1], placed.height);
-        let share = Share { right, lower, weight };
+        let share = Share {
+            right,
+            lower,
+            weight,
+        };
         let stride = self.texture.sheet().stride();
-        let offsets = offset(stride, placed.column + column, placed.row + row);
+        let offsets = (placed.row + row) * stride + (placed.column + column);
         sums.add(self.simd, self.texels, stride as usize, offsets, &share);
     }
 
     /// The first of two neighbouring texels on an axis of `size`, −1 to size − 1, and the weight of the second.
     #[inline(always)]
-    fn texel(&self, place: f32x16<S>, size: f32x16<S>) -> (f32x16<S>, f32x16<S>) {
-        let zero = f32x16::splat(self.simd, 0.0);
-        let half = f32x16::splat(self.simd, 0.5);
+    fn texel(&self, place: f32x16<S>, size: f32x16<S>) -> (u32x16<S>, u32x16<S>) {
+        let bits = self.texture.fraction_bits();
+        let half = f32x16::splat(self.simd, (1u32 << (bits - 1)) as f32);
         let to_centre = match self.nearest {
-            Some(nearest) => nearest.select(zero, half),
+            Some(nearest) => nearest.select(f32x16::splat(self.simd, 0.0), half),
             None => half,
         };
-        let from_centre = (place * size - to_centre).max(f32x16::splat(self.simd, -1.0));
-        let first = from_centre.floor().min(size - 1.0);
-        let second = (from_centre - first).min(f32x16::splat(self.simd, 1.0));
+        let mut units = place * size - to_centre;
+        if self.bordered {
+            units = units.max(half * -2.0).min(size - 1.0);
+        }
+        // Truncated above −1: what is added is a whole texel.
+        let units = i32x16::truncate_from(units + half * 2.0);
+        let fraction = units & ((1 << bits) - 1);
+        let first: u32x16<S> = ((units >> bits) - 1).bitcast();
+        let second: u32x16<S> = (fraction << (ONE.ilog2() - bits)).bitcast();
         match self.nearest {
-            Some(nearest) => (first, nearest.select(zero, second)),
+            Some(nearest) => (first, nearest.select(u32x16::splat(self.simd, 0), second)),
             None => (first, second),
         }
     }
-}
-
-#[inline(always)]
-fn offset<S: Simd>(stride: u32, column: f32x16<S>, row: f32x16<S>) -> u32x16<S> {
-    u32x16::truncate_from(row) * stride + u32x16::truncate_from(column)
 }
 
 /// 8-bit texels as they are, where each lane reads just one.
@@ -143,11 +154,16 @@ pub(super) fn picked<S: Simd>(
     let plan = Plan::of(simd, texture, state, footprint);
     let placed = texture.placed(simd, plan.fine);
     let [s_mode, t_mode] = texture.modes();
-    let (s, t) = (unit(simd, s_mode, footprint.s), unit(simd, t_mode, footprint.t));
-    let column = (s * placed.width).floor().min(placed.width - 1.0);
-    let row = (t * placed.height).floor().min(placed.height - 1.0);
+    let (s, t) = (
+        unit(simd, s_mode, footprint.s),
+        unit(simd, t_mode, footprint.t),
+    );
+    let bits = texture.fraction_bits();
+    let column = u32x16::truncate_from((s * placed.width).min(placed.width - 1.0)) >> bits;
+    let row = u32x16::truncate_from((t * placed.height).min(placed.height - 1.0)) >> bits;
     let stride = texture.sheet().stride();
-    let offsets: [u32; 16] = offset(stride, placed.column + column, placed.row + row).to_array();
+    let offsets = (placed.row + row) * stride + (placed.column + column);
+    let offsets: [u32; 16] = offsets.to_array();
     let mut codes = [0; 16];
     for (code, offset) in codes.iter_mut().zip(offsets) {
         *code = texels[offset as usize];

@@ -36,8 +36,8 @@ mod plan;
 
 use fearless_simd::prelude::*;
 use fearless_simd::{Simd, f32x16, u8x64, u16x32, u32x16};
-use sampler::packet::{SheetTexels, Sums8, Sums16, SumsFloat, channels};
 use sampler::Filter;
+use sampler::packet::{SheetTexels, Sums8, Sums16, SumsFloat, channels};
 
 pub use layout::PackedPyramid;
 
@@ -111,7 +111,9 @@ pub fn sample_codes<S: Simd>(
 /// 0..=1 to the nearest of 0..=255.
 #[inline(always)]
 fn codes<S: Simd>(simd: S, channel: f32x16<S>) -> u32x16<S> {
-    let held = channel.max(f32x16::splat(simd, 0.0)).min(f32x16::splat(simd, 1.0));
+    let held = channel
+        .max(f32x16::splat(simd, 0.0))
+        .min(f32x16::splat(simd, 1.0));
     u32x16::truncate_from(held * 255.0 + 0.5)
 }
 

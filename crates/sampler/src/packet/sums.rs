@@ -10,18 +10,19 @@ use super::lanes::{channels, repeated, repeated_floats};
 /// Bound of the error of one 8-bit lookup, in units of the greatest texel: four weights in units of 2⁻¹⁴, and f32.
 pub const SUMS8_MAX_ERROR: f32 = 1.3e-4;
 
-/// What a lookup's weights of 1 add up to in [`Sums8`].
-const ONE8: f32 = 16384.0;
+/// The weight of 1 in [`Share`] and in [`Sums8`].
+pub const ONE: u32 = 1 << ONE_BITS;
+const ONE_BITS: u32 = 14;
 
-/// Where a packet's lookups stand between their texels, and what each counts for.
+/// Where a packet's lookups stand between their texels, and what each counts for, in units of 1/[`ONE`].
 #[derive(Debug, Clone, Copy)]
 pub struct Share<S: Simd> {
-    /// Weight of the right column of texels, 0..=1.
-    pub right: f32x16<S>,
-    /// Weight of the lower row, 0..=1.
-    pub lower: f32x16<S>,
-    /// What the lookup counts for, 0..=1.
-    pub weight: f32x16<S>,
+    /// Weight of the right column of texels, 0..=[`ONE`].
+    pub right: u32x16<S>,
+    /// Weight of the lower row, 0..=[`ONE`].
+    pub lower: u32x16<S>,
+    /// What the lookup counts for, 0..=[`ONE`].
+    pub weight: u32x16<S>,
 }
 
 /// Weighted sums over a packet's lookups.
@@ -114,7 +115,7 @@ impl<S: Simd> Sums<S> for Sums8<S> {
 
     #[inline(always)]
     fn texels(self, simd: S, scale: f32x16<S>) -> [f32x16<S>; 4] {
-        let scales = repeated_floats(scale * (1.0 / (255.0 * ONE8)));
+        let scales = repeated_floats(scale * (1.0 / (255.0 * ONE as f32)));
         let mut texels = [f32x16::splat(simd, 0.0); 4];
         for group in 0..4 {
             texels[group] = f32x16::float_from(self.0[group]) * scales[group];
@@ -123,32 +124,38 @@ impl<S: Simd> Sums<S> for Sums8<S> {
     }
 }
 
-/// Weights of the upper and of the lower two texels in units of 1/[`ONE8`], the left one's in the low half of a lane.
-/// They add up to the lookup's weight in those units, exactly.
+/// `weight` times `part`, to the nearest unit.
+#[inline(always)]
+fn part_of<S: Simd>(weight: u32x16<S>, part: u32x16<S>) -> u32x16<S> {
+    (weight * part + ONE / 2) >> ONE_BITS
+}
+
+/// Weights of the upper and of the lower two texels, the left one's in the low half of a lane. They add up to the
+/// lookup's weight exactly.
 #[inline(always)]
 fn integer_weights<S: Simd>(share: &Share<S>) -> [u32x16<S>; 2] {
-    let all = (share.weight * ONE8).round_ties_even();
-    let lower = (all * share.lower).round_ties_even();
-    let upper = all - lower;
+    let lower = part_of(share.weight, share.lower);
+    let upper = share.weight - lower;
     [
-        left_and_right(upper, share.right),
-        left_and_right(lower, share.right),
+        left_and_right(upper, part_of(upper, share.right)),
+        left_and_right(lower, part_of(lower, share.right)),
     ]
 }
 
 #[inline(always)]
-fn left_and_right<S: Simd>(row: f32x16<S>, right: f32x16<S>) -> u32x16<S> {
-    let right = (row * right).round_ties_even();
-    let left = row - right;
-    u32x16::truncate_from(left) | (u32x16::truncate_from(right) << 16)
+fn left_and_right<S: Simd>(row: u32x16<S>, right: u32x16<S>) -> u32x16<S> {
+    (row - right) | (right << 16)
 }
 
 /// Weights of the four texels: left and right of the upper row, left and right of the lower.
 #[inline(always)]
 fn float_weights<S: Simd>(share: &Share<S>) -> [[f32x16<S>; 4]; 4] {
-    let lower = share.weight * share.lower;
-    let upper = share.weight - lower;
-    let (upper_right, lower_right) = (upper * share.right, lower * share.right);
+    let unit = 1.0 / ONE as f32;
+    let weight = f32x16::float_from(share.weight) * unit;
+    let lower = weight * (f32x16::float_from(share.lower) * unit);
+    let upper = weight - lower;
+    let right = f32x16::float_from(share.right) * unit;
+    let (upper_right, lower_right) = (upper * right, lower * right);
     [
         repeated_floats(upper - upper_right),
         repeated_floats(upper_right),
