@@ -2,7 +2,7 @@
 
 use fearless_simd::prelude::*;
 use fearless_simd::{Simd, f32x16, i32x16, mask32x16, u32x16};
-use sampler::packet::{ONE, Share, Sums, unit};
+use sampler::packet::{ONE, Share, Sums, codes, unit};
 use sampler::{AddressMode, Filter};
 
 use super::layout::Placed;
@@ -10,15 +10,54 @@ use super::plan::Plan;
 use super::{PackedPyramid, PacketFootprint};
 use crate::sample::{MipFilter, SamplerState};
 
-/// The filtered colours, interleaved RGBA.
+/// What becomes of a packet's sums.
+pub(super) trait Finish<S: Simd> {
+    type Output;
+    /// `total`: what the lookups counted for; `None` for 1.
+    fn finish<A: Sums<S>>(simd: S, sums: A, total: Option<f32x16<S>>) -> Self::Output;
+}
+
+/// Interleaved RGBA.
+pub(super) struct Colours;
+
+/// 8-bit codes of RGBA.
+pub(super) struct Codes;
+
+impl<S: Simd> Finish<S> for Colours {
+    type Output = [f32x16<S>; 4];
+
+    #[inline(always)]
+    fn finish<A: Sums<S>>(simd: S, sums: A, total: Option<f32x16<S>>) -> [f32x16<S>; 4] {
+        let one = f32x16::splat(simd, 1.0);
+        let scale = match total {
+            None => one,
+            Some(total) => one / total,
+        };
+        sums.texels(simd, scale)
+    }
+}
+
+impl<S: Simd> Finish<S> for Codes {
+    type Output = u32x16<S>;
+
+    #[inline(always)]
+    fn finish<A: Sums<S>>(simd: S, sums: A, total: Option<f32x16<S>>) -> u32x16<S> {
+        match total {
+            None => sums.codes(simd),
+            Some(_) => codes(simd, Colours::finish(simd, sums, total)),
+        }
+    }
+}
+
+/// The filtered colours.
 #[inline(always)]
-pub(super) fn filtered<S: Simd, A: Sums<S>>(
+pub(super) fn filtered<S: Simd, A: Sums<S>, F: Finish<S>>(
     simd: S,
     texture: &PackedPyramid,
     texels: &[A::Texel],
     state: &SamplerState,
     footprint: &PacketFootprint<S>,
-) -> [f32x16<S>; 4] {
+) -> F::Output {
     let plan = Plan::of(simd, texture, state, footprint);
     let lookup = Lookup {
         simd,
@@ -54,7 +93,11 @@ pub(super) fn filtered<S: Simd, A: Sums<S>>(
             lookup.level(&mut sums, &placed[1], place, coarse);
         }
     }
-    sums.texels(simd, plan.line.map_or(one, |line| one / line.total))
+    let total = match plan.line {
+        None => None,
+        Some(line) => Some(line.total),
+    };
+    F::finish(simd, sums, total)
 }
 
 /// Lanes that read one texel of a level; none where no filter does.

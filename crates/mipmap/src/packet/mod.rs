@@ -34,12 +34,12 @@ mod layout;
 mod lookup;
 mod plan;
 
-use fearless_simd::prelude::*;
-use fearless_simd::{Simd, f32x16, u8x64, u16x32, u32x16};
+use fearless_simd::{Simd, f32x16, u32x16};
 use sampler::Filter;
 use sampler::packet::{SheetTexels, Sums8, Sums16, SumsFloat, channels};
 
 pub use layout::PackedPyramid;
+use lookup::{Codes, Colours, Finish};
 
 use crate::probes::ProbeWeights;
 use crate::sample::SamplerState;
@@ -85,7 +85,7 @@ pub fn sample<S: Simd>(
     state: &SamplerState,
     footprint: &PacketFootprint<S>,
 ) -> [f32x16<S>; 4] {
-    channels(colours(simd, texture, state, footprint))
+    channels(filtered::<S, Colours>(simd, texture, state, footprint))
 }
 
 /// As [`sample`], each channel clamped to 0..=1 and rounded to the nearest 8-bit code, r in the lowest byte.
@@ -101,43 +101,29 @@ pub fn sample_codes<S: Simd>(
     {
         return codes;
     }
-    let [a, b, c, d] = colours(simd, texture, state, footprint);
-    let low: u16x32<S> = codes(simd, a).relaxed_narrow(codes(simd, b));
-    let high: u16x32<S> = codes(simd, c).relaxed_narrow(codes(simd, d));
-    let bytes: u8x64<S> = low.relaxed_narrow(high);
-    bytes.bitcast()
+    filtered::<S, Codes>(simd, texture, state, footprint)
 }
 
-/// 0..=1 to the nearest of 0..=255.
+/// One function a kind of texel, however many callers: inlined it is 10 KiB of code each.
 #[inline(always)]
-fn codes<S: Simd>(simd: S, channel: f32x16<S>) -> u32x16<S> {
-    let held = channel
-        .max(f32x16::splat(simd, 0.0))
-        .min(f32x16::splat(simd, 1.0));
-    u32x16::truncate_from(held * 255.0 + 0.5)
-}
-
-/// The colours, interleaved.
-#[inline(always)]
-fn colours<S: Simd>(
+fn filtered<S: Simd, F: Finish<S>>(
     simd: S,
     texture: &PackedPyramid,
     state: &SamplerState,
     footprint: &PacketFootprint<S>,
-) -> [f32x16<S>; 4] {
-    // One function a kind of texel, however many callers: inlined it is 10 KiB of code each.
+) -> F::Output {
     match texture.sheet().texels() {
         SheetTexels::Codes8(texels) => simd.vectorize(
             #[inline(always)]
-            || lookup::filtered::<S, Sums8<S>>(simd, texture, texels, state, footprint),
+            || lookup::filtered::<S, Sums8<S>, F>(simd, texture, texels, state, footprint),
         ),
         SheetTexels::Codes16(texels) => simd.vectorize(
             #[inline(always)]
-            || lookup::filtered::<S, Sums16<S>>(simd, texture, texels, state, footprint),
+            || lookup::filtered::<S, Sums16<S>, F>(simd, texture, texels, state, footprint),
         ),
         SheetTexels::Floats(texels) => simd.vectorize(
             #[inline(always)]
-            || lookup::filtered::<S, SumsFloat<S>>(simd, texture, texels, state, footprint),
+            || lookup::filtered::<S, SumsFloat<S>, F>(simd, texture, texels, state, footprint),
         ),
     }
 }

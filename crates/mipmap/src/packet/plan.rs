@@ -82,9 +82,12 @@ impl<S: Simd> Plan<S> {
             lambda -= packet_log2(simd, eta);
         }
         if state.lod_rule == LodRule::Exact {
-            let cut = (ellipse.aspect / eta)
-                .min(f32x16::splat(simd, 2.0))
-                .max(one);
+            let cut = if max_anisotropy == 1.0 {
+                ellipse.aspect
+            } else {
+                ellipse.aspect / eta
+            };
+            let cut = cut.min(f32x16::splat(simd, 2.0)).max(one);
             lambda -= packet_log2(simd, cut) * CUT_SHARPENING;
         }
         let lambda = bounded.select(lambda, f32x16::splat(simd, f32::INFINITY));

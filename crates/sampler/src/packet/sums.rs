@@ -49,6 +49,13 @@ pub trait Sums<S: Simd>: Copy {
     /// The sums times `scale`, interleaved RGBA: packet g holds lanes 4g to 4g + 3. Codes count as 0..=1.
     fn texels(self, simd: S, scale: f32x16<S>) -> [f32x16<S>; 4];
 
+    /// The sums of lookups that counted for 1 in all, each channel clamped to 0..=1 and rounded to the nearest 8-bit
+    /// code, r in the lowest byte.
+    #[inline(always)]
+    fn codes(self, simd: S) -> u32x16<S> {
+        codes(simd, self.texels(simd, f32x16::splat(simd, 1.0)))
+    }
+
     /// The sums times `scale`, a packet a channel.
     #[inline(always)]
     fn channels(self, simd: S, scale: f32x16<S>) -> [f32x16<S>; 4] {
@@ -113,6 +120,13 @@ impl<S: Simd> Sums<S> for Sums8<S> {
         }
     }
 
+    /// Exactly rounded: ties up.
+    #[inline(always)]
+    fn codes(self, _simd: S) -> u32x16<S> {
+        let [a, b, c, d] = self.0;
+        packed(whole(a), whole(b), whole(c), whole(d))
+    }
+
     #[inline(always)]
     fn texels(self, simd: S, scale: f32x16<S>) -> [f32x16<S>; 4] {
         let scales = repeated_floats(scale * (1.0 / (255.0 * ONE as f32)));
@@ -122,6 +136,36 @@ impl<S: Simd> Sums<S> for Sums8<S> {
         }
         texels
     }
+}
+
+/// A sum in units of 1/[`ONE`] to the nearest code.
+#[inline(always)]
+fn whole<S: Simd>(sum: i32x16<S>) -> u32x16<S> {
+    let sum: u32x16<S> = sum.bitcast();
+    (sum + ONE / 2) >> ONE_BITS
+}
+
+/// Interleaved colours, each channel clamped to 0..=1 and rounded to the nearest 8-bit code.
+#[inline(always)]
+pub fn codes<S: Simd>(simd: S, texels: [f32x16<S>; 4]) -> u32x16<S> {
+    let [a, b, c, d] = texels;
+    packed(code(simd, a), code(simd, b), code(simd, c), code(simd, d))
+}
+
+#[inline(always)]
+fn code<S: Simd>(simd: S, channel: f32x16<S>) -> u32x16<S> {
+    let zero = f32x16::splat(simd, 0.0);
+    let held = channel.max(zero).min(f32x16::splat(simd, 1.0));
+    u32x16::truncate_from(held * 255.0 + 0.5)
+}
+
+/// Interleaved codes of 0..=255, four lookups a packet, to one texel a lane.
+#[inline(always)]
+fn packed<S: Simd>(a: u32x16<S>, b: u32x16<S>, c: u32x16<S>, d: u32x16<S>) -> u32x16<S> {
+    let low: u16x32<S> = a.relaxed_narrow(b);
+    let high: u16x32<S> = c.relaxed_narrow(d);
+    let bytes: u8x64<S> = low.relaxed_narrow(high);
+    bytes.bitcast()
 }
 
 /// `weight` times `part`, to the nearest unit.
