@@ -95,10 +95,8 @@ pub(super) fn filtered<S: Simd, A: Sums<S>, F: Finish<S>>(
             lookup.level(&mut sums, &placed[1], place, coarse);
         }
     }
-    let total = match plan.line {
-        None => None,
-        Some(_) => Some(f32x16::float_from(all_weights) * (1.0 / ONE as f32)),
-    };
+    let weights = f32x16::float_from(all_weights) * (1.0 / ONE as f32);
+    let total = plan.line.is_some().then_some(weights);
     F::finish(simd, sums, total)
 }
 
