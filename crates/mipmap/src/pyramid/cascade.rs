@@ -12,8 +12,10 @@
 //!   rows of level 3                      0
 //! ```
 
+use fearless_simd::prelude::*;
+use fearless_simd::{Level, Simd, dispatch, f32x16, u16x32, u32x16};
 use glam::UVec2;
-use sampler::transfer::{SrgbU8Encoder, decode_srgb_u8, decode_unorm_u8, encode_unorm_u8};
+use sampler::transfer::{SrgbU8Encoder, decode_srgb_u8, decode_unorm_u8, encode_unorm_u8_packet};
 use sampler::{Component, Format, Texels, Texture, Transfer};
 
 use super::box_filter::{Averaging, Method, reduce_even};
@@ -215,6 +217,7 @@ struct Encoder {
     colour: &'static [f32; 256],
     /// None where colour is linear.
     srgb: Option<&'static SrgbU8Encoder>,
+    level: Level,
 }
 
 impl Encoder {
@@ -224,10 +227,12 @@ impl Encoder {
             Transfer::Srgb => Self {
                 colour: decode_srgb_u8(),
                 srgb: Some(SrgbU8Encoder::shared()),
+                level: Level::new(),
             },
             Transfer::Linear => Self {
                 colour: decode_unorm_u8(),
                 srgb: None,
+                level: Level::new(),
             },
         }
     }
@@ -259,39 +264,61 @@ impl Encoder {
 
     /// Each component to its nearest code.
     fn encode(&self, channels: usize, linear: &[f32], out: &mut [u8]) {
-        match channels {
-            1 => self.encode_of::<1>(linear, out),
-            2 => self.encode_of::<2>(linear, out),
-            3 => self.encode_of::<3>(linear, out),
-            _ => self.encode_of::<4>(linear, out),
-        }
-    }
-
-    fn encode_of<const N: usize>(&self, linear: &[f32], out: &mut [u8]) {
-        let texels = out
-            .as_chunks_mut::<N>()
-            .0
-            .iter_mut()
-            .zip(linear.as_chunks::<N>().0);
-        match self.srgb {
-            None => {
-                for (out, texel) in texels {
-                    *out = texel.map(encode_unorm_u8);
-                }
-            }
+        dispatch!(self.level, simd => match self.srgb {
+            None => encode_packets(linear, out, #[inline(always)] |value| encode_unorm_u8_packet(simd, value), simd),
             Some(encoder) => {
-                for (out, texel) in texels {
-                    for c in 0..N {
-                        out[c] = if is_alpha(c, N) {
-                            encode_unorm_u8(texel[c])
-                        } else {
-                            encoder.encode(texel[c])
-                        };
-                    }
+                let mut lanes = [0u32; 16];
+                for (lane, alpha) in lanes.iter_mut().enumerate() {
+                    *alpha = u32::from(is_alpha(lane % channels, channels));
                 }
+                let alpha = u32x16::simd_from(simd, lanes).simd_eq(u32x16::splat(simd, 1));
+                encode_packets(linear, out, #[inline(always)] |value| {
+                    let colour = encoder.encode_packet(simd, value);
+                    if channels.is_multiple_of(2) {
+                        alpha.select(encode_unorm_u8_packet(simd, value), colour)
+                    } else {
+                        colour
+                    }
+                }, simd);
             }
-        }
+        });
     }
+}
+
+/// Sixteen components a time; the last packet is filled up.
+#[inline(always)]
+fn encode_packets<S: Simd>(
+    linear: &[f32],
+    out: &mut [u8],
+    encode: impl Fn(f32x16<S>) -> u32x16<S>,
+    simd: S,
+) {
+    let (linear, rest) = linear.as_chunks::<64>();
+    let (out, out_rest) = out.as_chunks_mut::<64>();
+    for (out, linear) in out.iter_mut().zip(linear) {
+        encode_64(linear, out, &encode, simd);
+    }
+    let (mut last, mut codes) = ([0.0; 64], [0; 64]);
+    last[..rest.len()].copy_from_slice(rest);
+    encode_64(&last, &mut codes, &encode, simd);
+    out_rest.copy_from_slice(&codes[..rest.len()]);
+}
+
+#[inline(always)]
+fn encode_64<S: Simd>(
+    linear: &[f32; 64],
+    out: &mut [u8; 64],
+    encode: &impl Fn(f32x16<S>) -> u32x16<S>,
+    simd: S,
+) {
+    let mut packets = [u32x16::splat(simd, 0); 4];
+    for (packet, values) in packets.iter_mut().zip(linear.as_chunks::<16>().0) {
+        *packet = encode(f32x16::simd_from(simd, *values));
+    }
+    let [a, b, c, d] = packets;
+    let low: u16x32<S> = a.relaxed_narrow(b);
+    let high: u16x32<S> = c.relaxed_narrow(d);
+    low.relaxed_narrow(high).store_slice(out);
 }
 
 /// Whether `channel` of `channels` is alpha: the last of two or of four.
