@@ -20,7 +20,10 @@
 use std::sync::OnceLock;
 
 use fearless_simd::prelude::*;
-use fearless_simd::{Simd, f32x16, u32x16};
+use fearless_simd::{Level, Simd, dispatch, f32x16, u16x32, u32x16};
+
+use crate::format::Transfer;
+use crate::texel::is_alpha;
 
 /// Encoded value up to which the curve is a straight line (IEC 61966-2-1).
 const LINEAR_UP_TO_ENCODED: f64 = 0.040_45;
@@ -261,6 +264,76 @@ fn f32_at_or_above(value: f64) -> f32 {
 )]
 fn encode_unorm_u16_f64(value: f64) -> u16 {
     (value * 65535.0 + 0.5) as u16
+}
+
+/// Linear components to 8-bit codes, each to its nearest: colour by `transfer`, alpha linearly.
+///
+/// `channels`: how many lie side by side; the last of two or four is alpha. As [`encode_srgb_u8`] and
+/// [`encode_unorm_u8`] of each, sixteen at once.
+///
+/// # Panics
+/// If `out` is not as long as `linear`.
+pub fn encode_u8(transfer: Transfer, channels: usize, linear: &[f32], out: &mut [u8]) {
+    assert_eq!(linear.len(), out.len(), "a code for each component");
+    dispatch!(Level::new(), simd => match transfer {
+        Transfer::Linear => {
+            encode_packets(simd, linear, out, #[inline(always)] |value| {
+                encode_unorm_u8_packet(simd, value)
+            });
+        }
+        Transfer::Srgb => {
+            let encoder = SrgbU8Encoder::shared();
+            let mut lanes = [0u32; 16];
+            for (lane, alpha) in lanes.iter_mut().enumerate() {
+                *alpha = u32::from(is_alpha(lane % channels, channels));
+            }
+            let alpha = u32x16::simd_from(simd, lanes).simd_eq(u32x16::splat(simd, 1));
+            encode_packets(simd, linear, out, #[inline(always)] |value| {
+                let colour = encoder.encode_packet(simd, value);
+                if channels.is_multiple_of(2) {
+                    alpha.select(encode_unorm_u8_packet(simd, value), colour)
+                } else {
+                    colour
+                }
+            });
+        }
+    });
+}
+
+/// Sixteen components a time; the last packets are filled up.
+#[inline(always)]
+fn encode_packets<S: Simd>(
+    simd: S,
+    linear: &[f32],
+    out: &mut [u8],
+    encode: impl Fn(f32x16<S>) -> u32x16<S>,
+) {
+    let (linear, rest) = linear.as_chunks::<64>();
+    let (out, out_rest) = out.as_chunks_mut::<64>();
+    for (out, linear) in out.iter_mut().zip(linear) {
+        encode_64(simd, linear, out, &encode);
+    }
+    let (mut last, mut codes) = ([0.0; 64], [0; 64]);
+    last[..rest.len()].copy_from_slice(rest);
+    encode_64(simd, &last, &mut codes, &encode);
+    out_rest.copy_from_slice(&codes[..rest.len()]);
+}
+
+#[inline(always)]
+fn encode_64<S: Simd>(
+    simd: S,
+    linear: &[f32; 64],
+    out: &mut [u8; 64],
+    encode: &impl Fn(f32x16<S>) -> u32x16<S>,
+) {
+    let mut packets = [u32x16::splat(simd, 0); 4];
+    for (packet, values) in packets.iter_mut().zip(linear.as_chunks::<16>().0) {
+        *packet = encode(f32x16::simd_from(simd, *values));
+    }
+    let [a, b, c, d] = packets;
+    let low: u16x32<S> = a.relaxed_narrow(b);
+    let high: u16x32<S> = c.relaxed_narrow(d);
+    low.relaxed_narrow(high).store_slice(out);
 }
 
 #[cfg(test)]

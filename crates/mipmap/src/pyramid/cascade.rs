@@ -12,10 +12,8 @@
 //!   rows of level 3                      0
 //! ```
 
-use fearless_simd::prelude::*;
-use fearless_simd::{Level, Simd, dispatch, f32x16, u16x32, u32x16};
 use glam::UVec2;
-use sampler::transfer::{SrgbU8Encoder, decode_srgb_u8, decode_unorm_u8, encode_unorm_u8_packet};
+use sampler::transfer::{decode_srgb_u8, decode_unorm_u8, encode_u8};
 use sampler::{Component, Format, Texels, Texture, Transfer};
 
 use super::box_filter::{Averaging, Method, reduce_even};
@@ -86,7 +84,7 @@ pub(super) fn cascade(
         method,
         rows,
         count,
-        encoder: Encoder::of(texture.format()),
+        decoder: Decoder::of(texture.format()),
     };
     schedule.for_each(
         strips,
@@ -135,7 +133,7 @@ struct Maker<'a, R> {
     method: Method,
     rows: &'a R,
     count: u32,
-    encoder: Encoder,
+    decoder: Decoder,
 }
 
 impl<R: Rows> Maker<'_, R> {
@@ -177,6 +175,11 @@ impl<R: Rows> Maker<'_, R> {
         linear.copy_from_slice(&scratch.rows[self.count as usize - 1][0]);
     }
 
+    fn encode(&self, linear: &[f32], out: &mut [u8]) {
+        let format = self.texture.format();
+        encode_u8(format.transfer, self.method.channels, linear, out);
+    }
+
     /// Row j of level 1.
     fn first_level(&self, j: u32, scratch: &mut Scratch, parity: u32) {
         let out = &mut scratch.rows[0][parity as usize];
@@ -187,7 +190,7 @@ impl<R: Rows> Maker<'_, R> {
             let length = self.length(0);
             let pair = &codes[2 * j as usize * length..][..2 * length];
             return self
-                .encoder
+                .decoder
                 .quads(self.method.channels, pair.split_at(length), out);
         }
         let (above, below) = scratch.source.split_at_mut(self.length(0));
@@ -203,38 +206,28 @@ impl<R: Rows> Maker<'_, R> {
         let out = &mut codes[index][row as usize * length..][..length];
         let made = &scratch.rows[index][(row % 2) as usize];
         if self.rows.plain() {
-            return self.encoder.encode(self.method.channels, made, out);
+            return self.encode(made, out);
         }
         let finished = &mut scratch.finished[..length];
         finished.copy_from_slice(made);
         self.rows.finish(finished);
-        self.encoder.encode(self.method.channels, finished, out);
+        self.encode(finished, out);
     }
 }
 
-/// Codes to light and back.
-struct Encoder {
+/// Codes to light.
+struct Decoder {
     colour: &'static [f32; 256],
-    /// None where colour is linear.
-    srgb: Option<&'static SrgbU8Encoder>,
-    level: Level,
 }
 
-impl Encoder {
+impl Decoder {
     fn of(format: Format) -> Self {
         debug_assert_eq!(format.component, Component::U8);
-        match format.transfer {
-            Transfer::Srgb => Self {
-                colour: decode_srgb_u8(),
-                srgb: Some(SrgbU8Encoder::shared()),
-                level: Level::new(),
-            },
-            Transfer::Linear => Self {
-                colour: decode_unorm_u8(),
-                srgb: None,
-                level: Level::new(),
-            },
-        }
+        let colour = match format.transfer {
+            Transfer::Srgb => decode_srgb_u8(),
+            Transfer::Linear => decode_unorm_u8(),
+        };
+        Self { colour }
     }
 
     /// The mean light of each 2×2 block of codes.
@@ -261,64 +254,6 @@ impl Encoder {
             }
         }
     }
-
-    /// Each component to its nearest code.
-    fn encode(&self, channels: usize, linear: &[f32], out: &mut [u8]) {
-        dispatch!(self.level, simd => match self.srgb {
-            None => encode_packets(linear, out, #[inline(always)] |value| encode_unorm_u8_packet(simd, value), simd),
-            Some(encoder) => {
-                let mut lanes = [0u32; 16];
-                for (lane, alpha) in lanes.iter_mut().enumerate() {
-                    *alpha = u32::from(is_alpha(lane % channels, channels));
-                }
-                let alpha = u32x16::simd_from(simd, lanes).simd_eq(u32x16::splat(simd, 1));
-                encode_packets(linear, out, #[inline(always)] |value| {
-                    let colour = encoder.encode_packet(simd, value);
-                    if channels.is_multiple_of(2) {
-                        alpha.select(encode_unorm_u8_packet(simd, value), colour)
-                    } else {
-                        colour
-                    }
-                }, simd);
-            }
-        });
-    }
-}
-
-/// Sixteen components a time; the last packet is filled up.
-#[inline(always)]
-fn encode_packets<S: Simd>(
-    linear: &[f32],
-    out: &mut [u8],
-    encode: impl Fn(f32x16<S>) -> u32x16<S>,
-    simd: S,
-) {
-    let (linear, rest) = linear.as_chunks::<64>();
-    let (out, out_rest) = out.as_chunks_mut::<64>();
-    for (out, linear) in out.iter_mut().zip(linear) {
-        encode_64(linear, out, &encode, simd);
-    }
-    let (mut last, mut codes) = ([0.0; 64], [0; 64]);
-    last[..rest.len()].copy_from_slice(rest);
-    encode_64(&last, &mut codes, &encode, simd);
-    out_rest.copy_from_slice(&codes[..rest.len()]);
-}
-
-#[inline(always)]
-fn encode_64<S: Simd>(
-    linear: &[f32; 64],
-    out: &mut [u8; 64],
-    encode: &impl Fn(f32x16<S>) -> u32x16<S>,
-    simd: S,
-) {
-    let mut packets = [u32x16::splat(simd, 0); 4];
-    for (packet, values) in packets.iter_mut().zip(linear.as_chunks::<16>().0) {
-        *packet = encode(f32x16::simd_from(simd, *values));
-    }
-    let [a, b, c, d] = packets;
-    let low: u16x32<S> = a.relaxed_narrow(b);
-    let high: u16x32<S> = c.relaxed_narrow(d);
-    low.relaxed_narrow(high).store_slice(out);
 }
 
 /// Whether `channel` of `channels` is alpha: the last of two or of four.
