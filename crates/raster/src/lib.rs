@@ -70,12 +70,15 @@
 
 mod assemble;
 mod bins;
+mod buffer;
 mod clip;
-mod coverage;
 mod depth;
 mod edge;
 mod error;
+mod layer;
 mod samples;
+mod scan;
+mod setup;
 mod stroke;
 mod tile;
 mod triangle;
@@ -90,4 +93,4 @@ pub use stroke::{assemble_line, assemble_point};
 pub use tile::{MAX_TILE_SIZE, Rect, TILE_SIZE, TileGrid};
 pub use triangle::{Facing, Triangle};
 pub use viewport::{MAX_DIMENSION, SUBPIXELS, Viewport};
-pub use visibility::VisibilityTile;
+pub use visibility::{OwnerRows, Owners, VisibilityTile};
