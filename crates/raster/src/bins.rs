@@ -2,7 +2,7 @@
 
 use crate::Triangle;
 use crate::samples::SampleExtent;
-use crate::setup::{Corners, Extent, Setup};
+use crate::setup::{Extent, Setup};
 use crate::tile::TileGrid;
 
 /// For every tile the triangles that may touch it, in the order they were submitted.
@@ -26,9 +26,12 @@ impl Bins {
     pub fn build(grid: &TileGrid, triangles: &[Triangle]) -> Self {
         let mut touched: Vec<(u32, u32)> = Vec::with_capacity(triangles.len());
         for (index, triangle) in (0u32..).zip(triangles) {
-            for_each_tile(grid, &triangle.corners(), &SampleExtent::PIXEL, |tile| {
-                touched.push((tile, index))
-            });
+            for_each_tile(
+                grid,
+                &triangle.corners().positions,
+                &SampleExtent::PIXEL,
+                |tile| touched.push((tile, index)),
+            );
         }
         assert!(
             u32::try_from(triangles.len()).is_ok(),
@@ -72,13 +75,13 @@ impl Bins {
 /// Calls `touch` with the tiles that a triangle may touch, row by row.
 pub(crate) fn for_each_tile(
     grid: &TileGrid,
-    corners: &Corners,
+    positions: &[[i32; 2]; 3],
     extent: &SampleExtent,
     mut touch: impl FnMut(u32),
 ) {
     let viewport = grid.viewport();
     let size = [viewport.width, viewport.height].map(|n| n.cast_signed());
-    let Some(setup) = Setup::new(&corners.positions, [0, 0], size, extent) else {
+    let Some(setup) = Setup::new(positions, [0, 0], size, extent) else {
         return;
     };
     let side = grid.tile_size().cast_signed();

@@ -3,11 +3,11 @@
 use glam::{DVec3, IVec2, UVec2};
 use texcoord::{Weights, perspective_weights};
 
-use crate::SamplePattern;
 use crate::depth::DepthPlane;
 use crate::edge::{Edge, doubled_area};
 use crate::setup::Corners;
 use crate::viewport::SUBPIXELS;
+use crate::{SamplePattern, Surface};
 
 /// Which side of a surface is seen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -134,6 +134,17 @@ impl Triangle {
         Corners {
             positions: self.positions.map(|p| p.to_array()),
             depth: self.depth.to_array(),
+        }
+    }
+
+    /// As those see it that shade it, with its corners in a frame.
+    pub(crate) fn surface(&self, vertices: [u32; 3]) -> Surface<'_> {
+        Surface {
+            source: self.source,
+            vertices,
+            positions: self.positions.map(|p| p.to_array()),
+            inv_w: self.inv_w.to_array(),
+            piece: self.piece.as_deref(),
         }
     }
 
