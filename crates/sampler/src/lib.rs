@@ -73,12 +73,13 @@
 //! # Sources
 //! Vulkan 1.3, chapter "Image Operations"; Direct3D 11.3 functional specification, 3.2.3 and 7.18;
 //! IEC 61966-2-1 (sRGB); glTF 2.0, 3.8 "Texture Data".
-#![forbid(unsafe_code)]
+#![deny(unsafe_code)]
 
 mod address;
 mod alpha;
 mod compare;
 pub mod cube;
+
 mod error;
 #[cfg(feature = "exr")]
 mod exr;
@@ -88,6 +89,7 @@ mod format;
 #[cfg(feature = "image")]
 mod image;
 mod non_finite;
+pub mod packet;
 pub mod solid;
 mod texel;
 mod texture;

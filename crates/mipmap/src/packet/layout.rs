@@ -1,0 +1,231 @@
+//! All levels of a pyramid on one sheet.
+
+use fearless_simd::prelude::*;
+use fearless_simd::{Simd, f32x16, f64x8, u32x16};
+use glam::UVec2;
+use sampler::packet::{ONE, Sheet};
+use sampler::{AddressMode, Addressing};
+
+use crate::pyramid::Pyramid;
+
+/// A pyramid laid out for packets, under one pair of address modes.
+///
+/// ```text
+///   ┌───────────┬──────┐      level 0 on the left, the coarser ones in a column beside it;
+///   │           │  1   │      one stride, and places that follow from the level by a formula:
+///   │     0     ├───┬──┘      sixteen lanes may read sixteen levels without a table
+///   │           │ 2 │
+///   │           ├─┬─┘
+///   └───────────┴─┘
+/// ```
+///
+/// It takes 1.5 times the texels of level 0 where the pyramid takes 1.33, in the format of [`sampler::packet::SheetTexels`].
+#[derive(Debug, Clone)]
+pub struct PackedPyramid {
+    sheet: Sheet,
+    size: UVec2,
+    places: Vec<Place>,
+    modes: [AddressMode; 2],
+    fraction_bits: u32,
+}
+
+impl PackedPyramid {
+    /// Lays out a pyramid.
+    #[must_use]
+    pub fn new(pyramid: &Pyramid, address: &Addressing<2>) -> Self {
+        let (size, levels) = (pyramid.size(), pyramid.levels());
+        let beside = if levels > 1 {
+            (size.x / 2).max(1) + 2
+        } else {
+            0
+        };
+        let rows = (1..levels).fold(size.y + 2, |rows, level| {
+            rows.max(first_row(size.y, level) + pyramid.level(level).size().y + 2)
+        });
+        let stride = size.x + 2 + beside;
+        let mut sheet = Sheet::new(pyramid.level(0), address, stride, rows);
+        let fraction_bits = fraction_bits(size);
+        let units = (1u32 << fraction_bits) as f32;
+        let mut places = Vec::new();
+        for level in 0..levels {
+            let corner = match level {
+                0 => UVec2::ZERO,
+                _ => UVec2::new(size.x + 2, first_row(size.y, level)),
+            };
+            let texture = pyramid.level(level);
+            sheet.put(texture, address, corner);
+            places.push(Place {
+                width: texture.size().x as f32 * units,
+                height: texture.size().y as f32 * units,
+                column: corner.x + 1,
+                row: corner.y + 1,
+            });
+        }
+        Self {
+            sheet,
+            size,
+            places,
+            modes: address.modes,
+            fraction_bits,
+        }
+    }
+
+    /// Width and height of level 0, in texels.
+    #[inline]
+    #[must_use]
+    pub fn size(&self) -> UVec2 {
+        self.size
+    }
+
+    /// The number of levels, at least 1.
+    #[inline]
+    #[must_use]
+    pub fn levels(&self) -> u32 {
+        u32::try_from(self.places.len()).unwrap_or(u32::MAX)
+    }
+
+    /// Bytes that the texels take.
+    #[must_use]
+    pub fn byte_len(&self) -> usize {
+        self.sheet.byte_len()
+    }
+
+    /// Coordinates for [`crate::packet::PacketFootprint`]: whole periods taken off where the texture repeats, so that f32 resolves a
+    /// 2²⁴th of a texture however far away it lies.
+    ///
+    /// `s`, `t`: eight lanes and eight more. Exact up to the rounding to f32.
+    #[inline(always)]
+    #[must_use]
+    pub fn reduce<S: Simd>(&self, s: [f64x8<S>; 2], t: [f64x8<S>; 2]) -> (f32x16<S>, f32x16<S>) {
+        (reduced(self.modes[0], s), reduced(self.modes[1], t))
+    }
+
+    #[inline(always)]
+    pub(super) fn sheet(&self) -> &Sheet {
+        &self.sheet
+    }
+
+    #[inline(always)]
+    pub(super) fn modes(&self) -> [AddressMode; 2] {
+        self.modes
+    }
+}
+
+#[inline(always)]
+fn reduced<S: Simd>(mode: AddressMode, coordinate: [f64x8<S>; 2]) -> f32x16<S> {
+    let [low, high] = coordinate;
+    match mode {
+        AddressMode::Repeat => (low - low.floor()).narrow(high - high.floor()),
+        AddressMode::MirrorRepeat => {
+            let (turns, more) = ((low * 0.5).floor() * 2.0, (high * 0.5).floor() * 2.0);
+            (low - turns).narrow(high - more)
+        }
+        _ => low.narrow(high),
+    }
+}
+
+/// The row of a level k ≥ 1 on the sheet, in a texture of `height` rows: ⌊h − h/2ᵏ⁻¹⌋ + 4(k − 1), in f32.
+///
+/// From one to the next it grows by at least ⌊h/2ᵏ⌋ + 2 and by at least 3: room for the level and its ring.
+#[allow(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "not negative, and below 2¹⁷ or what memory holds"
+)]
+fn first_row(height: u32, level: u32) -> u32 {
+    let height = height as f32;
+    let part = height * f32::from_bits((128 - level) << 23);
+    ((height - part).floor() + 4.0 * (level as f32 - 1.0)) as u32
+}
+
+/// The greatest side in texels whose places fit 32 bits with all of [`ONE`]'s.
+const LONGEST_SIDE: u32 = 1 << 16;
+
+/// A level's size and place on the sheet, sixteen times.
+#[derive(Clone, Copy)]
+pub(super) struct Placed<S: Simd> {
+    /// Width and height, in units of 2⁻ᶠ texel: [`PackedPyramid::fraction_bits`].
+    pub(super) width: f32x16<S>,
+    pub(super) height: f32x16<S>,
+    /// Column and row of texel (0, 0).
+    pub(super) column: u32x16<S>,
+    pub(super) row: u32x16<S>,
+}
+
+/// The same, of one level.
+#[derive(Debug, Clone, Copy)]
+struct Place {
+    width: f32,
+    height: f32,
+    column: u32,
+    row: u32,
+}
+
+impl PackedPyramid {
+    /// Where each lane's level lies; whole numbers below [`Self::levels`].
+    #[inline(always)]
+    pub(super) fn placed<S: Simd>(&self, simd: S, level: f32x16<S>) -> Placed<S> {
+        let first = level[0];
+        if level.simd_eq(f32x16::splat(simd, first)).all_true() {
+            let place = &self.places[level_index(first)];
+            return Placed {
+                width: f32x16::splat(simd, place.width),
+                height: f32x16::splat(simd, place.height),
+                column: u32x16::splat(simd, place.column),
+                row: u32x16::splat(simd, place.row),
+            };
+        }
+        // 2⁻ᵏ by its exponent.
+        let w = f32x16::splat(simd, self.size.x as f32);
+        let h = f32x16::splat(simd, self.size.y as f32);
+        let one = f32x16::splat(simd, 1.0);
+        let index = u32x16::truncate_from(level);
+        let exponent = u32x16::splat(simd, 127) - index;
+        let part: f32x16<S> = (exponent << 23).bitcast();
+        let base = index.simd_eq(u32x16::splat(simd, 0));
+        let row = (h - h * part * 2.0).floor() + (level * 4.0 - 3.0);
+        let units = (1u32 << self.fraction_bits) as f32;
+        Placed {
+            width: (w * part).floor().max(one) * units,
+            height: (h * part).floor().max(one) * units,
+            column: base.select(u32x16::splat(simd, 1), u32x16::splat(simd, self.size.x + 3)),
+            row: base.select(u32x16::splat(simd, 1), u32x16::truncate_from(row.max(one))),
+        }
+    }
+
+    /// Fractional bits of a place in texels: as many as [`ONE`] has, but for sides of more than 65,536 texels.
+    #[inline(always)]
+    pub(super) fn fraction_bits(&self) -> u32 {
+        self.fraction_bits
+    }
+}
+
+fn fraction_bits(size: UVec2) -> u32 {
+    let longest = size.max_element().max(LONGEST_SIDE);
+    ONE.ilog2() + LONGEST_SIDE.ilog2() - longest.next_power_of_two().ilog2()
+}
+
+#[allow(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "a whole number below 32"
+)]
+#[inline(always)]
+fn level_index(level: f32) -> usize {
+    level as usize
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn levels_do_not_overlap() {
+        for height in (1..2100).chain([4095, 4096, 4097, 8191, 16384, 32768, 65535]) {
+            for level in 1..16 {
+                let end = first_row(height, level) + (height >> level).max(1) + 2;
+                assert!(end <= first_row(height, level + 1), "{height} {level}");
+            }
+        }
+    }
+}
