@@ -3,10 +3,11 @@
 use glam::{DVec3, IVec2, UVec2};
 use texcoord::{Weights, perspective_weights};
 
-use crate::SamplePattern;
 use crate::depth::DepthPlane;
 use crate::edge::{Edge, doubled_area};
+use crate::setup::Corners;
 use crate::viewport::SUBPIXELS;
+use crate::{SamplePattern, Surface};
 
 /// Which side of a surface is seen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -128,14 +129,28 @@ impl Triangle {
         [0, 1, 2].map(|i| Edge::new(p[(i + 1) % 3], p[(i + 2) % 3], turn))
     }
 
-    pub(crate) fn depth_plane(&self) -> DepthPlane {
-        DepthPlane::new(self.depth, doubled_area(self.positions).abs() as f64)
+    /// As a tile takes it.
+    pub(crate) fn corners(&self) -> Corners {
+        Corners {
+            positions: self.positions.map(|p| p.to_array()),
+            depth: self.depth.to_array(),
+        }
     }
 
-    /// Smallest and largest coordinates, in sub-pixel units.
-    pub(crate) fn bounds(&self) -> (IVec2, IVec2) {
-        let [a, b, c] = self.positions;
-        (a.min(b).min(c), a.max(b).max(c))
+    /// As those see it that shade it, with its corners in a frame.
+    pub(crate) fn surface(&self, vertices: [u32; 3]) -> Surface<'_> {
+        Surface {
+            source: self.source,
+            vertices,
+            positions: self.positions.map(|p| p.to_array()),
+            inv_w: self.inv_w.to_array(),
+            piece: self.piece.as_deref(),
+        }
+    }
+
+    fn depth_plane(&self) -> DepthPlane {
+        let area = doubled_area(self.positions).abs() as f64;
+        DepthPlane::new(self.depth.to_array(), area)
     }
 
     fn edge_values(&self, edges: &[Edge; 3], pixel: UVec2, point: IVec2) -> [i64; 3] {

@@ -22,6 +22,12 @@
 //! the law for a triangle, with closed-form derivatives: no 2×2 quads, no helper pixels. [`Weights`]
 //! interpolates attributes and texture coordinates ([`ScreenCoordinate`]), also from a clipped piece.
 //!
+//! # Packets
+//! [`packet`] is the same law for 16 pixels at once, each in a triangle of its own; [`planes`] is it for 16 in a row of
+//! one triangle.
+//!
+//! [`unrolled`] has the array loops that such code needs.
+//!
 //! # Transform
 //! [`TextureTransform`] is glTF's offset, rotation and scale, [`AffineTransform`] its form for pixels.
 //!
@@ -50,10 +56,13 @@
 //! KHR_texture_transform; Newell 1975; Crow 1987.
 #![forbid(unsafe_code)]
 
+pub mod packet;
 mod patch;
 mod perspective;
+pub mod planes;
 pub mod teapot;
 mod transform;
+pub mod unrolled;
 
 pub use patch::{BicubicPatch, PatchGrid};
 pub use perspective::{ScreenCoordinate, Weights, perspective_parameter, perspective_weights};
