@@ -22,6 +22,9 @@
 //! the law for a triangle, with closed-form derivatives: no 2×2 quads, no helper pixels. [`Weights`]
 //! interpolates attributes and texture coordinates ([`ScreenCoordinate`]), also from a clipped piece.
 //!
+//! # Packets
+//! [`packet`] is the same law for 16 pixels at once, each in a triangle of its own.
+//!
 //! # Transform
 //! [`TextureTransform`] is glTF's offset, rotation and scale, [`AffineTransform`] its form for pixels.
 //!
@@ -50,6 +53,7 @@
 //! KHR_texture_transform; Newell 1975; Crow 1987.
 #![forbid(unsafe_code)]
 
+pub mod packet;
 mod patch;
 mod perspective;
 pub mod teapot;

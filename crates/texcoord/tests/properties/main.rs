@@ -6,6 +6,7 @@
 )]
 
 mod oracle;
+mod packet;
 mod patch;
 mod perspective;
 mod strategies;

@@ -1,0 +1,98 @@
+//! Packets against the scalar function, on every instruction set of the machine.
+
+use fearless_simd::{Level, Simd, dispatch, prelude::*};
+use glam::DVec3;
+use proptest::prelude::*;
+use texcoord::packet::{DERIVATIVE_MAX_RELATIVE_ERROR, F64x16, LANES, perspective_weights};
+
+use crate::oracle;
+use crate::strategies::screen_triangle;
+
+/// Values by corner, then lane.
+type Corners<T> = [[T; LANES]; 3];
+
+/// What one pixel asks: edges, their gradients by x and y, 1/w.
+type Lane = [DVec3; 4];
+
+/// Every level that the machine has, the lowest first.
+fn levels() -> Vec<Level> {
+    let best = Level::new();
+    let mut levels = vec![Level::baseline()];
+    #[cfg(target_arch = "x86_64")]
+    {
+        levels.extend(best.as_sse4_2().map(Level::Sse4_2));
+        levels.extend(best.as_avx2().map(Level::Avx2));
+    }
+    levels.push(best);
+    levels
+}
+
+#[inline(always)]
+fn run<S: Simd>(simd: S, lanes: &[Lane; LANES]) -> (Corners<f64>, [Corners<f32>; 2]) {
+    let input = |k: usize| [0, 1, 2].map(|i| F64x16::from_fn(simd, |lane| lanes[lane][k][i]));
+    let found = perspective_weights(simd, &input(0), &input(1), &input(2), &input(3));
+    let narrow = |v: [fearless_simd::f32x16<S>; 3]| v.map(|x| x.to_array());
+    (
+        found.weights.map(F64x16::to_array),
+        [narrow(found.d_dx), narrow(found.d_dy)],
+    )
+}
+
+fn check(lanes: &[Lane; LANES]) {
+    let first = dispatch!(levels()[0], simd => run(simd, lanes));
+    for level in levels() {
+        let found = dispatch!(level, simd => run(simd, lanes));
+        assert_eq!(found, first, "{level:?}");
+    }
+    let (weights, slopes) = first;
+    for (lane, &[edges, dx, dy, inv_w]) in lanes.iter().enumerate() {
+        let truth = texcoord::perspective_weights(edges, dx, dy, inv_w);
+        for i in 0..3 {
+            assert_eq!(
+                weights[i][lane].to_bits(),
+                truth.value[i].to_bits(),
+                "weight {i} of lane {lane}: {edges} {inv_w}"
+            );
+        }
+        for (found, truth) in slopes.iter().zip([truth.dx, truth.dy]) {
+            let bound = DERIVATIVE_MAX_RELATIVE_ERROR * truth.abs().max_element()
+                + f64::from(f32::MIN_POSITIVE);
+            for i in 0..3 {
+                let error = (f64::from(found[i][lane]) - truth[i]).abs();
+                assert!(
+                    error <= bound,
+                    "slope {i} of lane {lane}: {error:e}, {truth}"
+                );
+            }
+        }
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(500))]
+
+    #[test]
+    fn sixteen_lanes_are_sixteen_pixels(triangles in proptest::collection::vec(screen_triangle(), LANES)) {
+        let lanes = core::array::from_fn(|lane| {
+            let triangle: &crate::strategies::ScreenTriangle = &triangles[lane];
+            let vector = |e: [i64; 3]| DVec3::from_array(e.map(|x| x as f64));
+            let [dx, dy] = oracle::edge_gradients(triangle);
+            [vector(oracle::edges(triangle)), vector(dx), vector(dy), triangle.inv_w]
+        });
+        check(&lanes);
+    }
+}
+
+#[test]
+fn lanes_beyond_the_horizon_are_defined() {
+    let usual = [DVec3::new(3.0, 4.0, 5.0), DVec3::X, DVec3::Y, DVec3::ONE];
+    let mut lanes = [usual; LANES];
+    lanes[1][0] = DVec3::ZERO;
+    lanes[3][0] = DVec3::new(-3.0, 1.0, 1.0);
+    lanes[6][0] = DVec3::new(f64::NAN, 1.0, 1.0);
+    lanes[9][0] = DVec3::new(f64::INFINITY, 1.0, 1.0);
+    lanes[12][3] = DVec3::new(-9.0, -1.0, -1.0);
+    lanes[15][3] = DVec3::ZERO;
+    lanes[15][1] = DVec3::splat(f64::INFINITY);
+    check(&lanes);
+}
