@@ -90,6 +90,7 @@ mod error;
 mod ewa;
 mod footprint;
 mod lod;
+pub mod packet;
 mod probes;
 pub mod pyramid;
 mod rip_map;

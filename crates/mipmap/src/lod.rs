@@ -1,3 +1,5 @@
+use fearless_simd::prelude::*;
+use fearless_simd::{Simd, f32x16, i32x16, u32x16};
 use glam::{UVec2, Vec2};
 
 use crate::footprint::footprint_axes;
@@ -79,6 +81,24 @@ pub(crate) fn quick_log2(x: f32) -> f32 {
     let high = 0.296_119_57 - 0.267_963_86 * z + 0.168_186_59 * squared;
     let slope = low + squared * (middle + squared * high);
     exponent as f32 + z * slope
+}
+
+/// [`quick_log2`] of sixteen normal numbers, with its bits; of what is not a normal number, some number.
+#[inline(always)]
+pub(crate) fn packet_log2<S: Simd>(simd: S, x: f32x16<S>) -> f32x16<S> {
+    let splat = |x| f32x16::splat(simd, x);
+    let bits: u32x16<S> = x.bitcast();
+    let above: i32x16<S> = (bits - 0x3f35_04f3).bitcast();
+    let exponent = above >> 23;
+    let shifted: u32x16<S> = (exponent << 23).bitcast();
+    let mantissa: f32x16<S> = (bits - shifted).bitcast();
+    let z = mantissa - 1.0;
+    let squared = z * z;
+    let low = splat(1.442_696_6) - z * 0.721_360_2;
+    let middle = splat(0.480_613_1) - z * 0.359_524_46;
+    let high = splat(0.296_119_57) - z * 0.267_963_86 + squared * 0.168_186_59;
+    let slope = low + squared * (middle + squared * high);
+    f32x16::float_from(exponent) + z * slope
 }
 
 #[cfg(test)]

@@ -279,7 +279,7 @@ fn one_probe_until(magnify: Filter) -> f32 {
 /// A cut footprint is filtered by squares as wide as it is long over η: too wide across it, while a level finer would
 /// alias along it. Of all values, 0.4 has nearly the least RMSE against a box pixel on the planes of
 /// `texrender frontier`, for 1 to 16 probes and for every texture there; the error is flat from 0.3 to 0.6.
-const CUT_SHARPENING: f32 = 0.4;
+pub(crate) const CUT_SHARPENING: f32 = 0.4;
 
 /// The octaves of aspect that are cut, up to one: λ is lowered in proportion.
 #[inline]

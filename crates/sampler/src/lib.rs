@@ -79,6 +79,7 @@ mod address;
 mod alpha;
 mod compare;
 pub mod cube;
+
 mod error;
 #[cfg(feature = "exr")]
 mod exr;
@@ -88,6 +89,7 @@ mod format;
 #[cfg(feature = "image")]
 mod image;
 mod non_finite;
+pub mod packet;
 pub mod solid;
 mod texel;
 mod texture;

@@ -69,6 +69,16 @@ impl Tables {
         }
     }
 
+    /// 8-bit colour in units of 1/65535.
+    pub(crate) fn fixed_colour(&self) -> &'static [u16; 256] {
+        self.colour_fixed
+    }
+
+    /// 8-bit alpha in units of 1/65535.
+    pub(crate) fn fixed_alpha(&self) -> &'static [u16; 256] {
+        self.alpha_fixed
+    }
+
     pub(crate) fn decode_row_u8<const CHANNELS: usize>(&self, stored: &[u8], row: &mut [f32]) {
         for (out, texel) in row
             .chunks_exact_mut(CHANNELS)

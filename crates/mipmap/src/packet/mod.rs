@@ -1,0 +1,134 @@
+//! Sixteen filtered lookups at once.
+//!
+//! [`PackedPyramid`] is a pyramid laid out for them: all levels on one sheet, each in a ring of what its address
+//! modes find beyond the border. [`sample`] is the packet twin of [`crate::sample`], [`sample_codes`] the same rounded
+//! to 8-bit RGBA.
+//!
+//! ```
+//! use fearless_simd::{Level, dispatch, f32x16, prelude::*};
+//! use glam::UVec2;
+//! use mipmap::packet::{PackedPyramid, PacketFootprint, sample_codes};
+//! use mipmap::{Content, Pyramid, SamplerState};
+//! use sampler::{Addressing, Texels, Texture, Transfer};
+//!
+//! let halves = Texture::new(UVec2::new(2, 1), 1, Transfer::Linear, Texels::U8(vec![0, 200]))?;
+//! let packed = PackedPyramid::new(&Pyramid::build(halves, Content::Data)?, &Addressing::default());
+//! let codes: [u32; 16] = dispatch!(Level::new(), simd => {
+//!     let [zero, far] = [0.0, 10.0].map(|x| f32x16::splat(simd, x));
+//!     // Pixels that see the texture ten times over see its mean.
+//!     let footprint = PacketFootprint {
+//!         s: zero, t: zero, ds_dx: far, dt_dx: zero, ds_dy: zero, dt_dy: far,
+//!     };
+//!     sample_codes(simd, &packed, &SamplerState::default(), &footprint).to_array()
+//! });
+//! assert_eq!(codes, [u32::from_le_bytes([100, 100, 100, 255]); 16]);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! # Accuracy
+//! λ and η are those of [`crate::sample`] in f32: λ within 1e-4 for aspects up to 64. Colours are within 1e-3 of it
+//! where coordinates are small; what a coordinate of f32 resolves, 2⁻²⁴ of a texture, comes on top. The bits are the
+//! same on every instruction set. `tests/properties/packet.rs`.
+
+mod layout;
+mod lookup;
+mod plan;
+
+use fearless_simd::prelude::*;
+use fearless_simd::{Simd, f32x16, u8x64, u16x32, u32x16};
+use sampler::packet::{SheetTexels, Sums8, Sums16, SumsFloat, channels};
+use sampler::Filter;
+
+pub use layout::PackedPyramid;
+
+use crate::probes::ProbeWeights;
+use crate::sample::SamplerState;
+
+/// Where sixteen pixels look in a texture, and how far their neighbours look.
+#[derive(Debug, Clone, Copy)]
+pub struct PacketFootprint<S: Simd> {
+    /// Texture coordinate s at the pixel's centre, whole periods taken off: [`PackedPyramid::reduce`].
+    pub s: f32x16<S>,
+    /// Texture coordinate t.
+    pub t: f32x16<S>,
+    /// Change of s to the next pixel in x.
+    pub ds_dx: f32x16<S>,
+    /// Change of t to the next pixel in x.
+    pub dt_dx: f32x16<S>,
+    /// Change of s to the next pixel in y.
+    pub ds_dy: f32x16<S>,
+    /// Change of t to the next pixel in y.
+    pub dt_dy: f32x16<S>,
+}
+
+/// Whether packets read a texture by `state`: all but bicubic filters and Gaussian probes, which stay with
+/// [`crate::sample`].
+#[must_use]
+pub fn reads(state: &SamplerState) -> bool {
+    let linear = |filter| matches!(filter, Filter::Nearest | Filter::Bilinear);
+    let one_probe = state.max_anisotropy.max(1.0) == 1.0;
+    linear(state.magnify)
+        && linear(state.minify)
+        && (one_probe || state.probe_weights == ProbeWeights::Equal)
+}
+
+/// The colours under sixteen footprints, a packet a channel: as [`crate::sample`], for what [`reads`] accepts.
+///
+/// Other filters are read as the nearest that it accepts: bicubic as bilinear, Gaussian probes as equal ones.
+///
+/// # Accuracy
+/// See the [module](self).
+#[inline(always)]
+pub fn sample<S: Simd>(
+    simd: S,
+    texture: &PackedPyramid,
+    state: &SamplerState,
+    footprint: &PacketFootprint<S>,
+) -> [f32x16<S>; 4] {
+    channels(colours(simd, texture, state, footprint))
+}
+
+/// As [`sample`], each channel clamped to 0..=1 and rounded to the nearest 8-bit code, r in the lowest byte.
+#[inline(always)]
+pub fn sample_codes<S: Simd>(
+    simd: S,
+    texture: &PackedPyramid,
+    state: &SamplerState,
+    footprint: &PacketFootprint<S>,
+) -> u32x16<S> {
+    if let SheetTexels::Codes8(texels) = texture.sheet().texels()
+        && let Some(codes) = lookup::picked(simd, texture, texels, state, footprint)
+    {
+        return codes;
+    }
+    let codes = colours(simd, texture, state, footprint).map(|texels| {
+        let zero = f32x16::splat(simd, 0.0);
+        let one = f32x16::splat(simd, 1.0);
+        u32x16::truncate_from(texels.max(zero).min(one) * 255.0 + 0.5)
+    });
+    let [a, b, c, d] = codes;
+    let (low, high): (u16x32<S>, u16x32<S>) = (a.relaxed_narrow(b), c.relaxed_narrow(d));
+    let bytes: u8x64<S> = low.relaxed_narrow(high);
+    bytes.bitcast()
+}
+
+/// The colours, interleaved.
+#[inline(always)]
+fn colours<S: Simd>(
+    simd: S,
+    texture: &PackedPyramid,
+    state: &SamplerState,
+    footprint: &PacketFootprint<S>,
+) -> [f32x16<S>; 4] {
+    match texture.sheet().texels() {
+        SheetTexels::Codes8(texels) => {
+            lookup::filtered::<S, Sums8<S>>(simd, texture, texels, state, footprint)
+        }
+        SheetTexels::Codes16(texels) => {
+            lookup::filtered::<S, Sums16<S>>(simd, texture, texels, state, footprint)
+        }
+        SheetTexels::Floats(texels) => {
+            lookup::filtered::<S, SumsFloat<S>>(simd, texture, texels, state, footprint)
+        }
+    }
+}
