@@ -88,6 +88,6 @@ pub use error::Error;
 pub use samples::{MAX_SAMPLES, SamplePattern};
 pub use stroke::{assemble_line, assemble_point};
 pub use tile::{MAX_TILE_SIZE, Rect, TILE_SIZE, TileGrid};
-pub use triangle::{Facing, Triangle};
+pub use triangle::{Facing, Planes, Triangle};
 pub use viewport::{MAX_DIMENSION, SUBPIXELS, Viewport};
 pub use visibility::VisibilityTile;

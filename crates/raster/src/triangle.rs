@@ -45,6 +45,18 @@ pub struct Triangle {
     piece: Option<Box<[DVec3; 3]>>,
 }
 
+/// What interpolation over a triangle needs, as plain numbers: for callers that work on many points at once.
+#[derive(Clone, Copy, Debug)]
+pub struct Planes {
+    /// For each corner (a, b, c) of the edge function opposite to it, E = a·x + b·y + c at x, y in 1/256 pixel from
+    /// the target's top left corner; ≥ 0 inside. Whole numbers; E and its terms are exact in f64 over the target.
+    pub edges: [[f64; 3]; 3],
+    /// 1/w of each corner.
+    pub inv_w: [f64; 3],
+    /// Barycentric coordinates of the corners in the source primitive; `None` where they are its own.
+    pub piece: Option<[DVec3; 3]>,
+}
+
 impl Triangle {
     /// `None` when the corners have no area on the grid.
     pub(crate) fn new(source: u32, facing: Facing, corners: [Corner; 3]) -> Option<Self> {
@@ -108,6 +120,19 @@ impl Triangle {
             }
         }
         self.weights_from(&edges, sums, mask.count_ones().into())
+    }
+
+    /// Its edge functions and 1/w, for [`texcoord::packet::perspective_weights`] and the like.
+    #[must_use]
+    pub fn planes(&self) -> Planes {
+        Planes {
+            edges: self.edges().map(|edge| {
+                let constant = edge.at(0, 0);
+                [edge.a as f64, edge.b as f64, constant as f64]
+            }),
+            inv_w: self.inv_w.to_array(),
+            piece: self.piece.as_deref().copied(),
+        }
     }
 
     /// Depth at a point, z/w in 0..=1 (1 near, 0 far), held within the range of the corners.

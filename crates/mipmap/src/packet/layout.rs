@@ -33,7 +33,11 @@ impl PackedPyramid {
     #[must_use]
     pub fn new(pyramid: &Pyramid, address: &Addressing<2>) -> Self {
         let (size, levels) = (pyramid.size(), pyramid.levels());
-        let beside = if levels > 1 { (size.x / 2).max(1) + 2 } else { 0 };
+        let beside = if levels > 1 {
+            (size.x / 2).max(1) + 2
+        } else {
+            0
+        };
         let rows = (1..levels).fold(size.y + 2, |rows, level| {
             rows.max(first_row(size.y, level) + pyramid.level(level).size().y + 2)
         });
@@ -80,11 +84,7 @@ impl PackedPyramid {
     /// `s`, `t`: eight lanes and eight more. Exact up to the rounding to f32.
     #[inline(always)]
     #[must_use]
-    pub fn reduce<S: Simd>(
-        &self,
-        s: [f64x8<S>; 2],
-        t: [f64x8<S>; 2],
-    ) -> (f32x16<S>, f32x16<S>) {
+    pub fn reduce<S: Simd>(&self, s: [f64x8<S>; 2], t: [f64x8<S>; 2]) -> (f32x16<S>, f32x16<S>) {
         (reduced(self.modes[0], s), reduced(self.modes[1], t))
     }
 
@@ -140,7 +140,12 @@ impl PackedPyramid {
         let [w, h] = [self.size.x as f32, self.size.y as f32].map(|side| f32x16::splat(simd, side));
         let one = f32x16::splat(simd, 1.0);
         if self.levels == 1 {
-            return Placed { width: w, height: h, column: one, row: one };
+            return Placed {
+                width: w,
+                height: h,
+                column: one,
+                row: one,
+            };
         }
         // 2⁻ᵏ by its exponent.
         let exponent = u32x16::splat(simd, 127) - u32x16::truncate_from(level);

@@ -22,7 +22,13 @@ pub(super) fn filtered<S: Simd, A: Sums<S>>(
     let nearest = nearest_lanes(simd, state, plan.minified);
     let one = f32x16::splat(simd, 1.0);
     let mut sums = A::zero(simd);
-    let mut lookup = Lookup { simd, texture, texels, sums: &mut sums, nearest };
+    let mut lookup = Lookup {
+        simd,
+        texture,
+        texels,
+        sums: &mut sums,
+        nearest,
+    };
     match plan.line {
         None => {
             lookup.levels(&plan, footprint.s, footprint.t, one);
@@ -92,10 +98,15 @@ impl<S: Simd, A: Sums<S>> Lookup<'_, S, A> {
         let placed = self.texture.placed(self.simd, level);
         let (column, right) = self.texel(place[0], placed.width);
         let (row, lower) = self.texel(place[1], placed.height);
-        let share = Share { right, lower, weight };
+        let share = Share {
+            right,
+            lower,
+            weight,
+        };
         let stride = self.texture.sheet().stride();
         let offsets = offset(stride, placed.column + column, placed.row + row);
-        self.sums.add(self.simd, self.texels, stride as usize, offsets, &share);
+        self.sums
+            .add(self.simd, self.texels, stride as usize, offsets, &share);
     }
 
     /// The first of two neighbouring texels on an axis of `size`, −1 to size − 1, and the weight of the second.
@@ -108,11 +119,21 @@ impl<S: Simd, A: Sums<S>> Lookup<'_, S, A> {
         let Some(nearest) = self.nearest else {
             let from_centre = (position - 0.5).max(minus_one);
             let first = last(from_centre.floor());
-            return (first, (from_centre - first).min(f32x16::splat(self.simd, 1.0)));
+            return (
+                first,
+                (from_centre - first).min(f32x16::splat(self.simd, 1.0)),
+            );
         };
-        let from_centre = (position - nearest.select(zero, f32x16::splat(self.simd, 0.5))).max(minus_one);
+        let from_centre =
+            (position - nearest.select(zero, f32x16::splat(self.simd, 0.5))).max(minus_one);
         let first = last(from_centre.floor());
-        (first, nearest.select(zero, (from_centre - first).min(f32x16::splat(self.simd, 1.0))))
+        (
+            first,
+            nearest.select(
+                zero,
+                (from_centre - first).min(f32x16::splat(self.simd, 1.0)),
+            ),
+        )
     }
 }
 
@@ -145,5 +166,9 @@ pub(super) fn picked<S: Simd>(
     let row = texel(unit(simd, t_mode, footprint.t), placed.height);
     let stride = texture.sheet().stride();
     let offsets: [u32; 16] = offset(stride, placed.column + column, placed.row + row).to_array();
-    Some(offsets.map(|offset| texels[offset as usize]).simd_into(simd))
+    Some(
+        offsets
+            .map(|offset| texels[offset as usize])
+            .simd_into(simd),
+    )
 }

@@ -36,8 +36,8 @@ mod plan;
 
 use fearless_simd::prelude::*;
 use fearless_simd::{Simd, f32x16, u8x64, u16x32, u32x16};
-use sampler::packet::{SheetTexels, Sums8, Sums16, SumsFloat, channels};
 use sampler::Filter;
+use sampler::packet::{SheetTexels, Sums8, Sums16, SumsFloat, channels};
 
 pub use layout::PackedPyramid;
 

@@ -59,7 +59,12 @@ impl<S: Simd> Plan<S> {
         let max_anisotropy = f32::min(state.max_anisotropy.max(1.0), MAX_ANISOTROPY);
         let one_level = texture.levels() == 1 || state.mip == MipFilter::None;
         if one_level && state.magnify == state.minify && max_anisotropy == 1.0 {
-            return Self { fine: zero, fraction: zero, minified: zero.simd_eq(one), line: None };
+            return Self {
+                fine: zero,
+                fraction: zero,
+                minified: zero.simd_eq(one),
+                line: None,
+            };
         }
 
         let ellipse = Ellipse::of(simd, texture, state.lod_rule, footprint);
@@ -77,7 +82,9 @@ impl<S: Simd> Plan<S> {
             lambda -= packet_log2(simd, eta);
         }
         if state.lod_rule == LodRule::Exact {
-            let cut = (ellipse.aspect / eta).min(f32x16::splat(simd, 2.0)).max(one);
+            let cut = (ellipse.aspect / eta)
+                .min(f32x16::splat(simd, 2.0))
+                .max(one);
             lambda -= packet_log2(simd, cut) * CUT_SHARPENING;
         }
         let lambda = bounded.select(lambda, f32x16::splat(simd, f32::INFINITY));
@@ -85,18 +92,18 @@ impl<S: Simd> Plan<S> {
         let (fine, fraction) = levels(simd, texture, state.mip, lambda);
         let line = (max_anisotropy > 1.0 && eta.simd_gt(one).any_true())
             .then(|| Line::of(simd, texture, &ellipse, eta));
-        Self { fine, fraction, minified: lambda.simd_gt(zero), line }
+        Self {
+            fine,
+            fraction,
+            minified: lambda.simd_gt(zero),
+            line,
+        }
     }
 }
 
 impl<S: Simd> Ellipse<S> {
     #[inline(always)]
-    fn of(
-        simd: S,
-        texture: &PackedPyramid,
-        rule: LodRule,
-        footprint: &PacketFootprint<S>,
-    ) -> Self {
+    fn of(simd: S, texture: &PackedPyramid, rule: LodRule, footprint: &PacketFootprint<S>) -> Self {
         let [w, h] = [texture.size().x as f32, texture.size().y as f32];
         let (ax, ay) = (footprint.ds_dx * w, footprint.dt_dx * h);
         let (bx, by) = (footprint.ds_dy * w, footprint.dt_dy * h);
@@ -156,19 +163,33 @@ fn followed<S: Simd>(
     let aspect = ellipse.aspect;
     let nearly_round = aspect.simd_lt(f32x16::splat(simd, 1.6));
     let needed = nearly_round.select((aspect * 1.5 - 0.8).max(one), aspect);
-    needed.min(f32x16::splat(simd, max_anisotropy)).min(most.max(one))
+    needed
+        .min(f32x16::splat(simd, max_anisotropy))
+        .min(most.max(one))
 }
 
 /// λ with bias and limits; NaN never passes.
 #[inline(always)]
 fn limited<S: Simd>(simd: S, state: &SamplerState, lambda: f32x16<S>) -> f32x16<S> {
     let splat = |x| f32x16::splat(simd, x);
-    let bias = if state.lod_bias.is_nan() { 0.0 } else { state.lod_bias };
+    let bias = if state.lod_bias.is_nan() {
+        0.0
+    } else {
+        state.lod_bias
+    };
     let biased = lambda + bias;
     let biased = biased.simd_eq(biased).select(biased, splat(f32::INFINITY));
     let [least, greatest] = state.lod_range;
-    let below = if greatest.is_nan() { biased } else { biased.min(splat(greatest)) };
-    if least.is_nan() { below } else { below.max(splat(least)) }
+    let below = if greatest.is_nan() {
+        biased
+    } else {
+        biased.min(splat(greatest))
+    };
+    if least.is_nan() {
+        below
+    } else {
+        below.max(splat(least))
+    }
 }
 
 #[inline(always)]
@@ -202,7 +223,10 @@ impl<S: Simd> Line<S> {
         let some = squared.simd_gt(zero) & squared.simd_le(splat(f32::MAX));
         let length = (ellipse.major_squared / some.select(squared, one)).sqrt() / eta;
         let [w, h] = [texture.size().x as f32, texture.size().y as f32];
-        let (step_s, step_t) = (some.select(x, zero) * length * (1.0 / w), some.select(y, zero) * length * (1.0 / h));
+        let (step_s, step_t) = (
+            some.select(x, zero) * length * (1.0 / w),
+            some.select(y, zero) * length * (1.0 / h),
+        );
         let half = eta * 0.5;
         let whole = half.floor();
         let rest = half - whole;

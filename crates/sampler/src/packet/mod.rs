@@ -26,7 +26,7 @@ mod sums;
 pub use axis::unit;
 pub use lanes::{channels, repeated};
 pub use sheet::{Sheet, SheetTexels};
-pub use sums::{Share, Sums, Sums8, Sums16, SumsFloat, SUMS8_MAX_ERROR};
+pub use sums::{SUMS8_MAX_ERROR, Share, Sums, Sums8, Sums16, SumsFloat};
 
 /// Lookups in a packet, on every instruction set.
 pub const LANES: usize = 16;

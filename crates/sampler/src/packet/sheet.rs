@@ -59,15 +59,27 @@ impl Sheet {
             let first = row * stride + corner.x as usize;
             match &mut self.texels {
                 SheetTexels::Codes8(codes) => {
-                    let row = Row { texture, address, source };
+                    let row = Row {
+                        texture,
+                        address,
+                        source,
+                    };
                     row.put(&mut codes[first..][..width], code8_row, code8);
                 }
                 SheetTexels::Codes16(codes) => {
-                    let row = Row { texture, address, source };
+                    let row = Row {
+                        texture,
+                        address,
+                        source,
+                    };
                     row.put(&mut codes[first..][..width], code16_row, code16);
                 }
                 SheetTexels::Floats(floats) => {
-                    let row = Row { texture, address, source };
+                    let row = Row {
+                        texture,
+                        address,
+                        source,
+                    };
                     row.put(&mut floats[first..][..width], float_row, |v| v.to_array());
                 }
             }
@@ -150,13 +162,20 @@ fn code16_row(texture: &Texture, j: u32, out: &mut [u64]) {
     };
     let tables = texture.tables();
     let [colour, alpha] = [tables.fixed_colour(), tables.fixed_alpha()];
-    let (c, a) = (|code: u8| colour[usize::from(code)], |code: u8| alpha[usize::from(code)]);
+    let (c, a) = (
+        |code: u8| colour[usize::from(code)],
+        |code: u8| alpha[usize::from(code)],
+    );
     let row = &stored[j as usize * out.len() * channels..][..out.len() * channels];
     match channels {
         1 => each::<1, u8, u64>(row, out, |&[r]| code16_of([c(r), c(r), c(r), u16::MAX])),
         2 => each::<2, u8, u64>(row, out, |&[r, w]| code16_of([c(r), c(r), c(r), a(w)])),
-        3 => each::<3, u8, u64>(row, out, |&[r, g, b]| code16_of([c(r), c(g), c(b), u16::MAX])),
-        _ => each::<4, u8, u64>(row, out, |&[r, g, b, w]| code16_of([c(r), c(g), c(b), a(w)])),
+        3 => each::<3, u8, u64>(row, out, |&[r, g, b]| {
+            code16_of([c(r), c(g), c(b), u16::MAX])
+        }),
+        _ => each::<4, u8, u64>(row, out, |&[r, g, b, w]| {
+            code16_of([c(r), c(g), c(b), a(w)])
+        }),
     }
 }
 

@@ -5,9 +5,17 @@
 //! stage, sample by sample. Blended surfaces are laid over, per sample, in exact order of depth.
 
 mod film;
-mod fragment;
+mod fragments;
+mod frame;
 mod geometry;
+mod lanes;
+mod layout;
+mod packets;
+mod pairs;
+mod record;
+mod resolve;
 mod shade;
+mod textures;
 mod tile;
 
 use std::sync::atomic::{AtomicUsize, Ordering};
