@@ -73,7 +73,7 @@
 //! # Sources
 //! Vulkan 1.3, chapter "Image Operations"; Direct3D 11.3 functional specification, 3.2.3 and 7.18;
 //! IEC 61966-2-1 (sRGB); glTF 2.0, 3.8 "Texture Data".
-#![forbid(unsafe_code)]
+#![deny(unsafe_code)]
 
 mod address;
 mod alpha;

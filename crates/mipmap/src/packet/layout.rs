@@ -3,7 +3,7 @@
 use fearless_simd::prelude::*;
 use fearless_simd::{Simd, f32x16, f64x8, u32x16};
 use glam::UVec2;
-use sampler::packet::Sheet;
+use sampler::packet::{ONE, Sheet};
 use sampler::{AddressMode, Addressing};
 
 use crate::pyramid::Pyramid;
@@ -24,8 +24,9 @@ use crate::pyramid::Pyramid;
 pub struct PackedPyramid {
     sheet: Sheet,
     size: UVec2,
-    levels: u32,
+    places: Vec<Place>,
     modes: [AddressMode; 2],
+    fraction_bits: u32,
 }
 
 impl PackedPyramid {
@@ -43,18 +44,29 @@ impl PackedPyramid {
         });
         let stride = size.x + 2 + beside;
         let mut sheet = Sheet::new(pyramid.level(0), address, stride, rows);
+        let fraction_bits = fraction_bits(size);
+        let units = (1u32 << fraction_bits) as f32;
+        let mut places = Vec::new();
         for level in 0..levels {
             let corner = match level {
                 0 => UVec2::ZERO,
                 _ => UVec2::new(size.x + 2, first_row(size.y, level)),
             };
-            sheet.put(pyramid.level(level), address, corner);
+            let texture = pyramid.level(level);
+            sheet.put(texture, address, corner);
+            places.push(Place {
+                width: texture.size().x as f32 * units,
+                height: texture.size().y as f32 * units,
+                column: corner.x + 1,
+                row: corner.y + 1,
+            });
         }
         Self {
             sheet,
             size,
-            levels,
+            places,
             modes: address.modes,
+            fraction_bits,
         }
     }
 
@@ -69,7 +81,7 @@ impl PackedPyramid {
     #[inline]
     #[must_use]
     pub fn levels(&self) -> u32 {
-        self.levels
+        u32::try_from(self.places.len()).unwrap_or(u32::MAX)
     }
 
     /// Bytes that the texels take.
@@ -101,12 +113,15 @@ impl PackedPyramid {
 
 #[inline(always)]
 fn reduced<S: Simd>(mode: AddressMode, coordinate: [f64x8<S>; 2]) -> f32x16<S> {
-    let [low, high] = match mode {
-        AddressMode::Repeat => coordinate.map(|x| x - x.floor()),
-        AddressMode::MirrorRepeat => coordinate.map(|x| x - (x * 0.5).floor() * 2.0),
-        _ => coordinate,
-    };
-    low.narrow(high)
+    let [low, high] = coordinate;
+    match mode {
+        AddressMode::Repeat => (low - low.floor()).narrow(high - high.floor()),
+        AddressMode::MirrorRepeat => {
+            let (turns, more) = ((low * 0.5).floor() * 2.0, (high * 0.5).floor() * 2.0);
+            (low - turns).narrow(high - more)
+        }
+        _ => low.narrow(high),
+    }
 }
 
 /// The row of a level k ≥ 1 on the sheet, in a texture of `height` rows: ⌊h − h/2ᵏ⁻¹⌋ + 4(k − 1), in f32.
@@ -123,20 +138,34 @@ fn first_row(height: u32, level: u32) -> u32 {
     ((height - part).floor() + 4.0 * (level as f32 - 1.0)) as u32
 }
 
+/// The greatest side in texels whose places fit 32 bits with all of [`ONE`]'s.
+const LONGEST_SIDE: u32 = 1 << 16;
+
 /// A level's size and place on the sheet, sixteen times.
 #[derive(Clone, Copy)]
 pub(super) struct Placed<S: Simd> {
+    /// Width and height, in units of 2⁻ᶠ texel: [`PackedPyramid::fraction_bits`].
     pub(super) width: f32x16<S>,
     pub(super) height: f32x16<S>,
     /// Column and row of texel (0, 0).
-    pub(super) column: f32x16<S>,
-    pub(super) row: f32x16<S>,
+    pub(super) column: u32x16<S>,
+    pub(super) row: u32x16<S>,
+}
+
+/// The same, of one level.
+#[derive(Debug, Clone, Copy)]
+struct Place {
+    width: f32,
+    height: f32,
+    column: u32,
+    row: u32,
 }
 
 impl PackedPyramid {
     /// Where each lane's level lies; whole numbers below [`Self::levels`].
     #[inline(always)]
     pub(super) fn placed<S: Simd>(&self, simd: S, level: f32x16<S>) -> Placed<S> {
+<<<<<<< HEAD
         let [w, h] = [self.size.x as f32, self.size.y as f32].map(|side| f32x16::splat(simd, side));
         let one = f32x16::splat(simd, 1.0);
         if self.levels == 1 {
@@ -145,20 +174,56 @@ impl PackedPyramid {
                 height: h,
                 column: one,
                 row: one,
+=======
+        let first = level[0];
+        if level.simd_eq(f32x16::splat(simd, first)).all_true() {
+            let place = &self.places[level_index(first)];
+            return Placed {
+                width: f32x16::splat(simd, place.width),
+                height: f32x16::splat(simd, place.height),
+                column: u32x16::splat(simd, place.column),
+                row: u32x16::splat(simd, place.row),
+>>>>>>> main
             };
         }
         // 2⁻ᵏ by its exponent.
-        let exponent = u32x16::splat(simd, 127) - u32x16::truncate_from(level);
+        let w = f32x16::splat(simd, self.size.x as f32);
+        let h = f32x16::splat(simd, self.size.y as f32);
+        let one = f32x16::splat(simd, 1.0);
+        let index = u32x16::truncate_from(level);
+        let exponent = u32x16::splat(simd, 127) - index;
         let part: f32x16<S> = (exponent << 23).bitcast();
-        let base = level.simd_eq(f32x16::splat(simd, 0.0));
-        let row = (h - h * part * 2.0).floor() + (level - 1.0) * 4.0 + one;
+        let base = index.simd_eq(u32x16::splat(simd, 0));
+        let row = (h - h * part * 2.0).floor() + (level * 4.0 - 3.0);
+        let units = (1u32 << self.fraction_bits) as f32;
         Placed {
-            width: (w * part).floor().max(one),
-            height: (h * part).floor().max(one),
-            column: base.select(one, w + 3.0),
-            row: base.select(one, row),
+            width: (w * part).floor().max(one) * units,
+            height: (h * part).floor().max(one) * units,
+            column: base.select(u32x16::splat(simd, 1), u32x16::splat(simd, self.size.x + 3)),
+            row: base.select(u32x16::splat(simd, 1), u32x16::truncate_from(row.max(one))),
         }
     }
+
+    /// Fractional bits of a place in texels: as many as [`ONE`] has, but for sides of more than 65,536 texels.
+    #[inline(always)]
+    pub(super) fn fraction_bits(&self) -> u32 {
+        self.fraction_bits
+    }
+}
+
+fn fraction_bits(size: UVec2) -> u32 {
+    let longest = size.max_element().max(LONGEST_SIDE);
+    ONE.ilog2() + LONGEST_SIDE.ilog2() - longest.next_power_of_two().ilog2()
+}
+
+#[allow(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "a whole number below 32"
+)]
+#[inline(always)]
+fn level_index(level: f32) -> usize {
+    level as usize
 }
 
 #[cfg(test)]

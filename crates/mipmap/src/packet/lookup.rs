@@ -1,27 +1,83 @@
 //! The texels that a plan names, weighted and summed.
 
 use fearless_simd::prelude::*;
-use fearless_simd::{Simd, f32x16, mask32x16, u32x16};
-use sampler::Filter;
-use sampler::packet::{Share, Sums, unit};
+use fearless_simd::{Simd, f32x16, i32x16, mask32x16, u32x16};
+use sampler::packet::{ONE, Share, Sums, codes, unit};
+use sampler::{AddressMode, Filter};
 
-use super::plan::{Line, Plan};
+use super::layout::Placed;
+use super::plan::Plan;
 use super::{PackedPyramid, PacketFootprint};
 use crate::sample::{MipFilter, SamplerState};
 
-/// The filtered colours, interleaved RGBA.
+/// What becomes of a packet's sums.
+pub(super) trait Finish<S: Simd> {
+    type Output;
+    /// `total`: what the lookups counted for; `None` for 1.
+    fn finish<A: Sums<S>>(simd: S, sums: A, total: Option<f32x16<S>>) -> Self::Output;
+}
+
+/// Interleaved RGBA.
+pub(super) struct Colours;
+
+/// 8-bit codes of RGBA.
+pub(super) struct Codes;
+
+impl<S: Simd> Finish<S> for Colours {
+    type Output = [f32x16<S>; 4];
+
+    #[inline(always)]
+    fn finish<A: Sums<S>>(simd: S, sums: A, total: Option<f32x16<S>>) -> [f32x16<S>; 4] {
+        let one = f32x16::splat(simd, 1.0);
+        let scale = match total {
+            None => one,
+            Some(total) => one / total,
+        };
+        sums.texels(simd, scale)
+    }
+}
+
+impl<S: Simd> Finish<S> for Codes {
+    type Output = u32x16<S>;
+
+    #[inline(always)]
+    fn finish<A: Sums<S>>(simd: S, sums: A, total: Option<f32x16<S>>) -> u32x16<S> {
+        match total {
+            None => sums.codes(simd),
+            Some(_) => codes(simd, Colours::finish(simd, sums, total)),
+        }
+    }
+}
+
+/// The filtered colours.
 #[inline(always)]
-pub(super) fn filtered<S: Simd, A: Sums<S>>(
+pub(super) fn filtered<S: Simd, A: Sums<S>, F: Finish<S>>(
     simd: S,
     texture: &PackedPyramid,
     texels: &[A::Texel],
     state: &SamplerState,
     footprint: &PacketFootprint<S>,
-) -> [f32x16<S>; 4] {
+) -> F::Output {
     let plan = Plan::of(simd, texture, state, footprint);
-    let nearest = nearest_lanes(simd, state, plan.minified);
+    let lookup = Lookup {
+        simd,
+        texture,
+        texels,
+        nearest: nearest_lanes(simd, state, plan.minified),
+        bordered: texture.modes().contains(&AddressMode::ClampToBorder),
+    };
+    let zero = f32x16::splat(simd, 0.0);
     let one = f32x16::splat(simd, 1.0);
+    // Beside the last level there is none; its weight is 0.
+    let last = f32x16::splat(simd, (texture.levels() - 1) as f32);
+    let levels = 1 + usize::from(plan.fraction.simd_gt(zero).any_true());
+    let fine = texture.placed(simd, plan.fine);
+    let mut placed = [fine; 2];
+    if levels == 2 {
+        placed[1] = texture.placed(simd, (plan.fine + 1.0).min(last));
+    }
     let mut sums = A::zero(simd);
+<<<<<<< HEAD
     let mut lookup = Lookup {
         simd,
         texture,
@@ -37,8 +93,29 @@ pub(super) fn filtered<S: Simd, A: Sums<S>>(
         Some(line) => {
             lookup.line(&plan, &line, footprint);
             sums.texels(simd, one / line.total)
+=======
+    // A line's probes stand on either side of the middle: pair 0 before and after it, pair 1, and so on.
+    let probes = plan.line.map_or(1, |line| 2 * line.pairs);
+    for probe in 0..probes {
+        let (s, t, weight) = match &plan.line {
+            None => (footprint.s, footprint.t, one),
+            Some(line) => line.probe(simd, probe, footprint),
+        };
+        let place = lookup.place(s, t);
+        let units = weight * ONE as f32;
+        let all = u32x16::truncate_from(units + 0.5);
+        let coarse = u32x16::truncate_from(units * plan.fraction + 0.5);
+        lookup.level(&mut sums, &placed[0], place, all - coarse);
+        if levels == 2 {
+            lookup.level(&mut sums, &placed[1], place, coarse);
+>>>>>>> main
         }
     }
+    let total = match plan.line {
+        None => None,
+        Some(line) => Some(line.total),
+    };
+    F::finish(simd, sums, total)
 }
 
 /// Lanes that read one texel of a level; none where no filter does.
@@ -57,45 +134,31 @@ fn nearest_lanes<S: Simd>(
     }
 }
 
-struct Lookup<'a, S: Simd, A: Sums<S>> {
+struct Lookup<'a, S: Simd, T> {
     simd: S,
     texture: &'a PackedPyramid,
-    texels: &'a [A::Texel],
-    sums: &'a mut A,
+    texels: &'a [T],
     nearest: Option<mask32x16<S>>,
+    bordered: bool,
 }
 
-impl<S: Simd, A: Sums<S>> Lookup<'_, S, A> {
-    /// A line of probes, pair by pair from the middle.
+impl<S: Simd, T> Lookup<'_, S, T> {
+    /// Where each lane stands in the texture.
     #[inline(always)]
-    fn line(&mut self, plan: &Plan<S>, line: &Line<S>, footprint: &PacketFootprint<S>) {
-        for k in 0..line.pairs {
-            let (cells, weight) = line.pair(self.simd, k);
-            let (s, t) = (line.step_s * cells, line.step_t * cells);
-            self.levels(plan, footprint.s - s, footprint.t - t, weight);
-            self.levels(plan, footprint.s + s, footprint.t + t, weight);
-        }
-    }
-
-    /// One probe of each lane: its two levels.
-    #[inline(always)]
-    fn levels(&mut self, plan: &Plan<S>, s: f32x16<S>, t: f32x16<S>, weight: f32x16<S>) {
+    fn place(&self, s: f32x16<S>, t: f32x16<S>) -> [f32x16<S>; 2] {
         let [s_mode, t_mode] = self.texture.modes();
-        let place = [unit(self.simd, s_mode, s), unit(self.simd, t_mode, t)];
-        let zero = f32x16::splat(self.simd, 0.0);
-        let coarser = plan.fraction.simd_gt(zero);
-        if !coarser.any_true() {
-            return self.level(plan.fine, place, weight);
-        }
-        let coarse = weight * plan.fraction;
-        self.level(plan.fine, place, weight - coarse);
-        let next = coarser.select(plan.fine + 1.0, plan.fine);
-        self.level(next, place, coarse);
+        [unit(self.simd, s_mode, s), unit(self.simd, t_mode, t)]
     }
 
+    /// Adds one level's texels at each lane's place.
     #[inline(always)]
-    fn level(&mut self, level: f32x16<S>, place: [f32x16<S>; 2], weight: f32x16<S>) {
-        let placed = self.texture.placed(self.simd, level);
+    fn level<A: Sums<S, Texel = T>>(
+        &self,
+        sums: &mut A,
+        placed: &Placed<S>,
+        place: [f32x16<S>; 2],
+        weight: u32x16<S>,
+    ) {
         let (column, right) = self.texel(place[0], placed.width);
         let (row, lower) = self.texel(place[1], placed.height);
         let share = Share {
@@ -104,13 +167,19 @@ impl<S: Simd, A: Sums<S>> Lookup<'_, S, A> {
             weight,
         };
         let stride = self.texture.sheet().stride();
+<<<<<<< HEAD
         let offsets = offset(stride, placed.column + column, placed.row + row);
         self.sums
             .add(self.simd, self.texels, stride as usize, offsets, &share);
+=======
+        let offsets = (placed.row + row) * stride + (placed.column + column);
+        sums.add(self.simd, self.texels, stride as usize, offsets, &share);
+>>>>>>> main
     }
 
     /// The first of two neighbouring texels on an axis of `size`, −1 to size − 1, and the weight of the second.
     #[inline(always)]
+<<<<<<< HEAD
     fn texel(&self, place: f32x16<S>, size: f32x16<S>) -> (f32x16<S>, f32x16<S>) {
         let zero = f32x16::splat(self.simd, 0.0);
         let position = place * size;
@@ -134,12 +203,29 @@ impl<S: Simd, A: Sums<S>> Lookup<'_, S, A> {
                 (from_centre - first).min(f32x16::splat(self.simd, 1.0)),
             ),
         )
+=======
+    fn texel(&self, place: f32x16<S>, size: f32x16<S>) -> (u32x16<S>, u32x16<S>) {
+        let bits = self.texture.fraction_bits();
+        let half = f32x16::splat(self.simd, (1u32 << (bits - 1)) as f32);
+        let to_centre = match self.nearest {
+            Some(nearest) => nearest.select(f32x16::splat(self.simd, 0.0), half),
+            None => half,
+        };
+        let mut units = place * size - to_centre;
+        if self.bordered {
+            units = units.max(half * -2.0).min(size - 1.0);
+        }
+        // Truncated above −1: what is added is a whole texel.
+        let units = i32x16::truncate_from(units + half * 2.0);
+        let fraction = units & ((1 << bits) - 1);
+        let first: u32x16<S> = ((units >> bits) - 1).bitcast();
+        let second: u32x16<S> = (fraction << (ONE.ilog2() - bits)).bitcast();
+        match self.nearest {
+            Some(nearest) => (first, nearest.select(u32x16::splat(self.simd, 0), second)),
+            None => (first, second),
+        }
+>>>>>>> main
     }
-}
-
-#[inline(always)]
-fn offset<S: Simd>(stride: u32, column: f32x16<S>, row: f32x16<S>) -> u32x16<S> {
-    u32x16::truncate_from(row) * stride + u32x16::truncate_from(column)
 }
 
 /// 8-bit texels as they are, where each lane reads just one.
@@ -161,14 +247,28 @@ pub(super) fn picked<S: Simd>(
     let plan = Plan::of(simd, texture, state, footprint);
     let placed = texture.placed(simd, plan.fine);
     let [s_mode, t_mode] = texture.modes();
-    let texel = |place: f32x16<S>, size: f32x16<S>| (place * size).floor().min(size - 1.0);
-    let column = texel(unit(simd, s_mode, footprint.s), placed.width);
-    let row = texel(unit(simd, t_mode, footprint.t), placed.height);
+    let (s, t) = (
+        unit(simd, s_mode, footprint.s),
+        unit(simd, t_mode, footprint.t),
+    );
+    let bits = texture.fraction_bits();
+    let column = u32x16::truncate_from((s * placed.width).min(placed.width - 1.0)) >> bits;
+    let row = u32x16::truncate_from((t * placed.height).min(placed.height - 1.0)) >> bits;
     let stride = texture.sheet().stride();
+<<<<<<< HEAD
     let offsets: [u32; 16] = offset(stride, placed.column + column, placed.row + row).to_array();
     Some(
         offsets
             .map(|offset| texels[offset as usize])
             .simd_into(simd),
     )
+=======
+    let offsets = (placed.row + row) * stride + (placed.column + column);
+    let offsets: [u32; 16] = offsets.to_array();
+    let mut codes = [0; 16];
+    for (code, offset) in codes.iter_mut().zip(offsets) {
+        *code = texels[offset as usize];
+    }
+    Some(codes.simd_into(simd))
+>>>>>>> main
 }

@@ -34,12 +34,17 @@ mod layout;
 mod lookup;
 mod plan;
 
+<<<<<<< HEAD
 use fearless_simd::prelude::*;
 use fearless_simd::{Simd, f32x16, u8x64, u16x32, u32x16};
+=======
+use fearless_simd::{Simd, f32x16, u32x16};
+>>>>>>> main
 use sampler::Filter;
 use sampler::packet::{SheetTexels, Sums8, Sums16, SumsFloat, channels};
 
 pub use layout::PackedPyramid;
+use lookup::{Codes, Colours, Finish};
 
 use crate::probes::ProbeWeights;
 use crate::sample::SamplerState;
@@ -85,7 +90,7 @@ pub fn sample<S: Simd>(
     state: &SamplerState,
     footprint: &PacketFootprint<S>,
 ) -> [f32x16<S>; 4] {
-    channels(colours(simd, texture, state, footprint))
+    channels(filtered::<S, Colours>(simd, texture, state, footprint))
 }
 
 /// As [`sample`], each channel clamped to 0..=1 and rounded to the nearest 8-bit code, r in the lowest byte.
@@ -101,34 +106,29 @@ pub fn sample_codes<S: Simd>(
     {
         return codes;
     }
-    let codes = colours(simd, texture, state, footprint).map(|texels| {
-        let zero = f32x16::splat(simd, 0.0);
-        let one = f32x16::splat(simd, 1.0);
-        u32x16::truncate_from(texels.max(zero).min(one) * 255.0 + 0.5)
-    });
-    let [a, b, c, d] = codes;
-    let (low, high): (u16x32<S>, u16x32<S>) = (a.relaxed_narrow(b), c.relaxed_narrow(d));
-    let bytes: u8x64<S> = low.relaxed_narrow(high);
-    bytes.bitcast()
+    filtered::<S, Codes>(simd, texture, state, footprint)
 }
 
-/// The colours, interleaved.
+/// One function a kind of texel, however many callers: inlined it is 10 KiB of code each.
 #[inline(always)]
-fn colours<S: Simd>(
+fn filtered<S: Simd, F: Finish<S>>(
     simd: S,
     texture: &PackedPyramid,
     state: &SamplerState,
     footprint: &PacketFootprint<S>,
-) -> [f32x16<S>; 4] {
+) -> F::Output {
     match texture.sheet().texels() {
-        SheetTexels::Codes8(texels) => {
-            lookup::filtered::<S, Sums8<S>>(simd, texture, texels, state, footprint)
-        }
-        SheetTexels::Codes16(texels) => {
-            lookup::filtered::<S, Sums16<S>>(simd, texture, texels, state, footprint)
-        }
-        SheetTexels::Floats(texels) => {
-            lookup::filtered::<S, SumsFloat<S>>(simd, texture, texels, state, footprint)
-        }
+        SheetTexels::Codes8(texels) => simd.vectorize(
+            #[inline(always)]
+            || lookup::filtered::<S, Sums8<S>, F>(simd, texture, texels, state, footprint),
+        ),
+        SheetTexels::Codes16(texels) => simd.vectorize(
+            #[inline(always)]
+            || lookup::filtered::<S, Sums16<S>, F>(simd, texture, texels, state, footprint),
+        ),
+        SheetTexels::Floats(texels) => simd.vectorize(
+            #[inline(always)]
+            || lookup::filtered::<S, SumsFloat<S>, F>(simd, texture, texels, state, footprint),
+        ),
     }
 }

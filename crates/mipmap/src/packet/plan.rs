@@ -82,16 +82,33 @@ impl<S: Simd> Plan<S> {
             lambda -= packet_log2(simd, eta);
         }
         if state.lod_rule == LodRule::Exact {
+<<<<<<< HEAD
             let cut = (ellipse.aspect / eta)
                 .min(f32x16::splat(simd, 2.0))
                 .max(one);
+=======
+            let cut = if max_anisotropy == 1.0 {
+                ellipse.aspect
+            } else {
+                ellipse.aspect / eta
+            };
+            let cut = cut.min(f32x16::splat(simd, 2.0)).max(one);
+>>>>>>> main
             lambda -= packet_log2(simd, cut) * CUT_SHARPENING;
         }
         let lambda = bounded.select(lambda, f32x16::splat(simd, f32::INFINITY));
         let lambda = limited(simd, state, lambda);
         let (fine, fraction) = levels(simd, texture, state.mip, lambda);
+<<<<<<< HEAD
         let line = (max_anisotropy > 1.0 && eta.simd_gt(one).any_true())
             .then(|| Line::of(simd, texture, &ellipse, eta));
+=======
+        let line = if max_anisotropy > 1.0 && eta.simd_gt(one).any_true() {
+            Some(Line::of(simd, texture, &ellipse, eta))
+        } else {
+            None
+        };
+>>>>>>> main
         Self {
             fine,
             fraction,
@@ -171,24 +188,36 @@ fn followed<S: Simd>(
 /// λ with bias and limits; NaN never passes.
 #[inline(always)]
 fn limited<S: Simd>(simd: S, state: &SamplerState, lambda: f32x16<S>) -> f32x16<S> {
+<<<<<<< HEAD
     let splat = |x| f32x16::splat(simd, x);
+=======
+    let infinite = f32x16::splat(simd, f32::INFINITY);
+>>>>>>> main
     let bias = if state.lod_bias.is_nan() {
         0.0
     } else {
         state.lod_bias
     };
     let biased = lambda + bias;
-    let biased = biased.simd_eq(biased).select(biased, splat(f32::INFINITY));
+    let biased = biased.simd_eq(biased).select(biased, infinite);
     let [least, greatest] = state.lod_range;
     let below = if greatest.is_nan() {
         biased
     } else {
+<<<<<<< HEAD
         biased.min(splat(greatest))
+=======
+        biased.min(f32x16::splat(simd, greatest))
+>>>>>>> main
     };
     if least.is_nan() {
         below
     } else {
+<<<<<<< HEAD
         below.max(splat(least))
+=======
+        below.max(f32x16::splat(simd, least))
+>>>>>>> main
     }
 }
 
@@ -215,12 +244,13 @@ fn levels<S: Simd>(
 impl<S: Simd> Line<S> {
     #[inline(always)]
     fn of(simd: S, texture: &PackedPyramid, ellipse: &Ellipse<S>, eta: f32x16<S>) -> Self {
-        let splat = |x| f32x16::splat(simd, x);
-        let (zero, one, two) = (splat(0.0), splat(1.0), splat(2.0));
+        let zero = f32x16::splat(simd, 0.0);
+        let one = f32x16::splat(simd, 1.0);
+        let two = f32x16::splat(simd, 2.0);
         // The longer axis over η, from texels to textures.
         let [x, y] = ellipse.along;
         let squared = x * x + y * y;
-        let some = squared.simd_gt(zero) & squared.simd_le(splat(f32::MAX));
+        let some = squared.simd_gt(zero) & squared.simd_le(f32x16::splat(simd, f32::MAX));
         let length = (ellipse.major_squared / some.select(squared, one)).sqrt() / eta;
         let [w, h] = [texture.size().x as f32, texture.size().y as f32];
         let (step_s, step_t) = (
@@ -243,15 +273,26 @@ impl<S: Simd> Line<S> {
         }
     }
 
-    /// Cells from the middle to pair `k`, and what each of its probes counts for.
+    /// Where probe `index` looks, and what it counts for: pairs from the middle on, of each the one before it first.
     #[inline(always)]
-    pub(super) fn pair(&self, simd: S, k: u32) -> (f32x16<S>, f32x16<S>) {
-        let k = f32x16::splat(simd, k as f32);
+    pub(super) fn probe(
+        &self,
+        simd: S,
+        index: u32,
+        footprint: &PacketFootprint<S>,
+    ) -> (f32x16<S>, f32x16<S>, f32x16<S>) {
+        let k = f32x16::splat(simd, (index / 2) as f32);
         let zero = f32x16::splat(simd, 0.0);
+        let one = f32x16::splat(simd, 1.0);
         let inner = k.simd_lt(self.whole);
-        let cells = inner.select(k + 0.5, self.end_at);
         let outer = k.simd_gt(self.whole).select(zero, self.end);
-        (cells, inner.select(f32x16::splat(simd, 1.0), outer))
+        let side = if index.is_multiple_of(2) { -1.0 } else { 1.0 };
+        let cells = inner.select(k + 0.5, self.end_at) * side;
+        (
+            footprint.s + self.step_s * cells,
+            footprint.t + self.step_t * cells,
+            inner.select(one, outer),
+        )
     }
 }
 

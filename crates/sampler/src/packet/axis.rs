@@ -17,17 +17,22 @@ use crate::address::AddressMode;
 pub fn unit<S: Simd>(simd: S, mode: AddressMode, coordinate: f32x16<S>) -> f32x16<S> {
     let zero = f32x16::splat(simd, 0.0);
     let one = f32x16::splat(simd, 1.0);
-    let known = |x: f32x16<S>| x.simd_eq(x).select(x, zero);
     match mode {
-        AddressMode::Repeat => known(coordinate - coordinate.floor()),
+        AddressMode::Repeat => known(simd, coordinate - coordinate.floor()),
         AddressMode::MirrorRepeat => {
             let folded = coordinate - (coordinate * 0.5).floor() * 2.0;
-            known(one - (folded - one).abs())
+            known(simd, one - (folded - one).abs())
         }
-        AddressMode::ClampToEdge => known(coordinate).max(zero).min(one),
-        AddressMode::MirrorClampToEdge => known(coordinate).abs().min(one),
-        AddressMode::ClampToBorder => known(coordinate)
+        AddressMode::ClampToEdge => known(simd, coordinate).max(zero).min(one),
+        AddressMode::MirrorClampToEdge => known(simd, coordinate).abs().min(one),
+        AddressMode::ClampToBorder => known(simd, coordinate)
             .max(f32x16::splat(simd, -1.0))
             .min(f32x16::splat(simd, 2.0)),
     }
+}
+
+/// NaN to 0.
+#[inline(always)]
+fn known<S: Simd>(simd: S, x: f32x16<S>) -> f32x16<S> {
+    x.simd_eq(x).select(x, f32x16::splat(simd, 0.0))
 }

@@ -19,6 +19,7 @@
 //! a lookup is within [`SUMS8_MAX_ERROR`] of the exact blend. Others are blended in f32.
 
 mod axis;
+mod fetch;
 mod lanes;
 mod sheet;
 mod sums;
@@ -26,7 +27,7 @@ mod sums;
 pub use axis::unit;
 pub use lanes::{channels, repeated};
 pub use sheet::{Sheet, SheetTexels};
-pub use sums::{SUMS8_MAX_ERROR, Share, Sums, Sums8, Sums16, SumsFloat};
+pub use sums::{ONE, SUMS8_MAX_ERROR, Share, Sums, Sums8, Sums16, SumsFloat, codes};
 
 /// Lookups in a packet, on every instruction set.
 pub const LANES: usize = 16;

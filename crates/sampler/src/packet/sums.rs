@@ -3,24 +3,26 @@
 use fearless_simd::prelude::*;
 use fearless_simd::{Simd, f32x16, i16x32, i32x16, u8x64, u16x32, u32x16, u64x8};
 
-use super::LANES;
+use super::fetch::Column::{Left, Right};
+use super::fetch::Quads;
 use super::lanes::{channels, repeated, repeated_floats};
 
 /// Bound of the error of one 8-bit lookup, in units of the greatest texel: four weights in units of 2⁻¹⁴, and f32.
 pub const SUMS8_MAX_ERROR: f32 = 1.3e-4;
 
-/// What a lookup's weights of 1 add up to in [`Sums8`].
-const ONE8: f32 = 16384.0;
+/// The weight of 1 in [`Share`] and in [`Sums8`].
+pub const ONE: u32 = 1 << ONE_BITS;
+const ONE_BITS: u32 = 14;
 
-/// Where a packet's lookups stand between their texels, and what each counts for.
+/// Where a packet's lookups stand between their texels, and what each counts for, in units of 1/[`ONE`].
 #[derive(Debug, Clone, Copy)]
 pub struct Share<S: Simd> {
-    /// Weight of the right column of texels, 0..=1.
-    pub right: f32x16<S>,
-    /// Weight of the lower row, 0..=1.
-    pub lower: f32x16<S>,
-    /// What the lookup counts for, 0..=1.
-    pub weight: f32x16<S>,
+    /// Weight of the right column of texels, 0..=[`ONE`].
+    pub right: u32x16<S>,
+    /// Weight of the lower row, 0..=[`ONE`].
+    pub lower: u32x16<S>,
+    /// What the lookup counts for, 0..=[`ONE`].
+    pub weight: u32x16<S>,
 }
 
 /// Weighted sums over a packet's lookups.
@@ -46,6 +48,13 @@ pub trait Sums<S: Simd>: Copy {
 
     /// The sums times `scale`, interleaved RGBA: packet g holds lanes 4g to 4g + 3. Codes count as 0..=1.
     fn texels(self, simd: S, scale: f32x16<S>) -> [f32x16<S>; 4];
+
+    /// The sums of lookups that counted for 1 in all, each channel clamped to 0..=1 and rounded to the nearest 8-bit
+    /// code, r in the lowest byte.
+    #[inline(always)]
+    fn codes(self, simd: S) -> u32x16<S> {
+        codes(simd, self.texels(simd, f32x16::splat(simd, 1.0)))
+    }
 
     /// The sums times `scale`, a packet a channel.
     #[inline(always)]
@@ -86,16 +95,16 @@ impl<S: Simd> Sums<S> for Sums8<S> {
         offsets: u32x16<S>,
         share: &Share<S>,
     ) {
-        let [upper, lower] = integer_weights(simd, share);
+        let [upper, lower] = integer_weights(share);
         let (upper, lower) = (repeated(upper), repeated(lower));
-        let offsets: [u32; LANES] = offsets.to_array();
+        let quads = Quads::new(simd, texels, stride, offsets);
         let beside = u8x64::block_splat(BESIDE.simd_into(simd));
         for half in 0..2 {
             let mut pairs = [[0u64; 8]; 2];
             for lane in 0..8 {
-                let rows = &texels[offsets[8 * half + lane] as usize..][..stride + 2];
-                pairs[0][lane] = pair(rows[0], rows[1]);
-                pairs[1][lane] = pair(rows[stride], rows[stride + 1]);
+                let from = 8 * half + lane;
+                pairs[0][lane] = quads.upper_pair(from);
+                pairs[1][lane] = quads.lower_pair(from);
             }
             for (pairs, weights) in pairs.into_iter().zip([&upper, &lower]) {
                 let bytes: u8x64<S> = u64x8::simd_from(simd, pairs).bitcast();
@@ -111,54 +120,102 @@ impl<S: Simd> Sums<S> for Sums8<S> {
         }
     }
 
+    /// Exactly rounded: ties up.
+    #[inline(always)]
+    fn codes(self, _simd: S) -> u32x16<S> {
+        let [a, b, c, d] = self.0;
+        packed(whole(a), whole(b), whole(c), whole(d))
+    }
+
     #[inline(always)]
     fn texels(self, simd: S, scale: f32x16<S>) -> [f32x16<S>; 4] {
-        let scales = repeated_floats(scale * (1.0 / (255.0 * ONE8)));
-        let at = |g: usize| f32x16::float_from(self.0[g]) * scales[g];
-        let _ = simd;
-        [at(0), at(1), at(2), at(3)]
+        let scales = repeated_floats(scale * (1.0 / (255.0 * ONE as f32)));
+        let mut texels = [f32x16::splat(simd, 0.0); 4];
+        for group in 0..4 {
+            texels[group] = f32x16::float_from(self.0[group]) * scales[group];
+        }
+        texels
     }
 }
 
+/// A sum in units of 1/[`ONE`] to the nearest code.
 #[inline(always)]
-fn pair(left: u32, right: u32) -> u64 {
-    u64::from(left) | u64::from(right) << 32
+fn whole<S: Simd>(sum: i32x16<S>) -> u32x16<S> {
+    let sum: u32x16<S> = sum.bitcast();
+    (sum + ONE / 2) >> ONE_BITS
 }
 
-/// Weights of the upper and of the lower two texels in units of 1/[`ONE8`], the left one's in the low half of a lane.
-/// They add up to the lookup's weight in those units, exactly.
+/// Interleaved colours, each channel clamped to 0..=1 and rounded to the nearest 8-bit code.
 #[inline(always)]
-fn integer_weights<S: Simd>(simd: S, share: &Share<S>) -> [u32x16<S>; 2] {
-    let _ = simd;
-    let all = (share.weight * ONE8).round_ties_even();
-    let lower = (all * share.lower).round_ties_even();
-    let upper = all - lower;
-    [upper, lower].map(|row| {
-        let right = (row * share.right).round_ties_even();
-        let left = row - right;
-        u32x16::truncate_from(left) | (u32x16::truncate_from(right) << 16)
-    })
+pub fn codes<S: Simd>(simd: S, texels: [f32x16<S>; 4]) -> u32x16<S> {
+    let [a, b, c, d] = texels;
+    packed(code(simd, a), code(simd, b), code(simd, c), code(simd, d))
+}
+
+#[inline(always)]
+fn code<S: Simd>(simd: S, channel: f32x16<S>) -> u32x16<S> {
+    let zero = f32x16::splat(simd, 0.0);
+    let held = channel.max(zero).min(f32x16::splat(simd, 1.0));
+    u32x16::truncate_from(held * 255.0 + 0.5)
+}
+
+/// Interleaved codes of 0..=255, four lookups a packet, to one texel a lane.
+#[inline(always)]
+fn packed<S: Simd>(a: u32x16<S>, b: u32x16<S>, c: u32x16<S>, d: u32x16<S>) -> u32x16<S> {
+    let low: u16x32<S> = a.relaxed_narrow(b);
+    let high: u16x32<S> = c.relaxed_narrow(d);
+    let bytes: u8x64<S> = low.relaxed_narrow(high);
+    bytes.bitcast()
+}
+
+/// `weight` times `part`, to the nearest unit.
+#[inline(always)]
+fn part_of<S: Simd>(weight: u32x16<S>, part: u32x16<S>) -> u32x16<S> {
+    (weight * part + ONE / 2) >> ONE_BITS
+}
+
+/// Weights of the upper and of the lower two texels, the left one's in the low half of a lane. They add up to the
+/// lookup's weight exactly.
+#[inline(always)]
+fn integer_weights<S: Simd>(share: &Share<S>) -> [u32x16<S>; 2] {
+    let lower = part_of(share.weight, share.lower);
+    let upper = share.weight - lower;
+    [
+        left_and_right(upper, part_of(upper, share.right)),
+        left_and_right(lower, part_of(lower, share.right)),
+    ]
+}
+
+#[inline(always)]
+fn left_and_right<S: Simd>(row: u32x16<S>, right: u32x16<S>) -> u32x16<S> {
+    (row - right) | (right << 16)
 }
 
 /// Weights of the four texels: left and right of the upper row, left and right of the lower.
 #[inline(always)]
 fn float_weights<S: Simd>(share: &Share<S>) -> [[f32x16<S>; 4]; 4] {
-    let lower = share.weight * share.lower;
-    let upper = share.weight - lower;
-    let (upper_right, lower_right) = (upper * share.right, lower * share.right);
+    let unit = 1.0 / ONE as f32;
+    let weight = f32x16::float_from(share.weight) * unit;
+    let lower = weight * (f32x16::float_from(share.lower) * unit);
+    let upper = weight - lower;
+    let right = f32x16::float_from(share.right) * unit;
+    let (upper_right, lower_right) = (upper * right, lower * right);
     [
-        upper - upper_right,
-        upper_right,
-        lower - lower_right,
-        lower_right,
+        repeated_floats(upper - upper_right),
+        repeated_floats(upper_right),
+        repeated_floats(lower - lower_right),
+        repeated_floats(lower_right),
     ]
-    .map(repeated_floats)
 }
 
-/// The four texels of 2×2, as offsets from the first.
+/// Interleaved sums, each lane's times its scale.
 #[inline(always)]
-fn taps(stride: usize) -> [usize; 4] {
-    [0, 1, stride, stride + 1]
+fn scaled<S: Simd>(mut sums: [f32x16<S>; 4], scale: f32x16<S>) -> [f32x16<S>; 4] {
+    let scales = repeated_floats(scale);
+    for group in 0..4 {
+        sums[group] = sums[group] * scales[group];
+    }
+    sums
 }
 
 impl<S: Simd> Sums<S> for Sums16<S> {
@@ -179,14 +236,15 @@ impl<S: Simd> Sums<S> for Sums16<S> {
         share: &Share<S>,
     ) {
         let weights = float_weights(share);
-        let offsets: [u32; LANES] = offsets.to_array();
+        let quads = Quads::new(simd, texels, stride, offsets);
         for half in 0..2 {
             let mut codes = [[0u64; 8]; 4];
             for lane in 0..8 {
-                let rows = &texels[offsets[8 * half + lane] as usize..][..stride + 2];
-                for (codes, tap) in codes.iter_mut().zip(taps(stride)) {
-                    codes[lane] = rows[tap];
-                }
+                let from = 8 * half + lane;
+                codes[0][lane] = quads.upper(from, Left);
+                codes[1][lane] = quads.upper(from, Right);
+                codes[2][lane] = quads.lower(from, Left);
+                codes[3][lane] = quads.lower(from, Right);
             }
             for (codes, weights) in codes.into_iter().zip(&weights) {
                 let codes: u16x32<S> = u64x8::simd_from(simd, codes).bitcast();
@@ -198,10 +256,8 @@ impl<S: Simd> Sums<S> for Sums16<S> {
     }
 
     #[inline(always)]
-    fn texels(self, simd: S, scale: f32x16<S>) -> [f32x16<S>; 4] {
-        let _ = simd;
-        let scales = repeated_floats(scale * (1.0 / 65535.0));
-        [0, 1, 2, 3].map(|g| self.0[g] * scales[g])
+    fn texels(self, _simd: S, scale: f32x16<S>) -> [f32x16<S>; 4] {
+        scaled(self.0, scale * (1.0 / 65535.0))
     }
 }
 
@@ -223,14 +279,16 @@ impl<S: Simd> Sums<S> for SumsFloat<S> {
         share: &Share<S>,
     ) {
         let weights = float_weights(share);
-        let offsets: [u32; LANES] = offsets.to_array();
+        let quads = Quads::new(simd, texels, stride, offsets);
         for group in 0..4 {
             let mut colours = [[0.0f32; 16]; 4];
             for lane in 0..4 {
-                let rows = &texels[offsets[4 * group + lane] as usize..][..stride + 2];
-                for (colours, tap) in colours.iter_mut().zip(taps(stride)) {
-                    colours[4 * lane..][..4].copy_from_slice(&rows[tap]);
-                }
+                let from = 4 * group + lane;
+                let to = 4 * lane..4 * lane + 4;
+                colours[0][to.clone()].copy_from_slice(&quads.upper(from, Left));
+                colours[1][to.clone()].copy_from_slice(&quads.upper(from, Right));
+                colours[2][to.clone()].copy_from_slice(&quads.lower(from, Left));
+                colours[3][to].copy_from_slice(&quads.lower(from, Right));
             }
             for (colours, weights) in colours.iter().zip(&weights) {
                 self.0[group] += f32x16::from_slice(simd, colours) * weights[group];
@@ -239,9 +297,7 @@ impl<S: Simd> Sums<S> for SumsFloat<S> {
     }
 
     #[inline(always)]
-    fn texels(self, simd: S, scale: f32x16<S>) -> [f32x16<S>; 4] {
-        let _ = simd;
-        let scales = repeated_floats(scale);
-        [0, 1, 2, 3].map(|g| self.0[g] * scales[g])
+    fn texels(self, _simd: S, scale: f32x16<S>) -> [f32x16<S>; 4] {
+        scaled(self.0, scale)
     }
 }
