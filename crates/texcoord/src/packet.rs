@@ -108,8 +108,11 @@ impl<S: Simd> F64x16<S> {
     /// Lanes that are positive finite numbers.
     #[inline(always)]
     fn is_positive_finite(self) -> [mask64x8<S>; 2] {
-        self.0
-            .map(|half| half.simd_gt(0.0) & half.simd_lt(f64::INFINITY))
+        let [low, high] = self.0;
+        [
+            low.simd_gt(0.0) & low.simd_lt(f64::INFINITY),
+            high.simd_gt(0.0) & high.simd_lt(f64::INFINITY),
+        ]
     }
 }
 
@@ -168,7 +171,11 @@ pub fn perspective_weights<S: Simd>(
 ) -> PacketWeights<S> {
     // Affine barycentrics, each correctly rounded when the edges are exact.
     let area = edges[0] + edges[1] + edges[2];
-    let over_w = [0, 1, 2].map(|i| edges[i] / area * inv_w[i]);
+    let over_w = [
+        edges[0] / area * inv_w[0],
+        edges[1] / area * inv_w[1],
+        edges[2] / area * inv_w[2],
+    ];
     let sum = over_w[0] + over_w[1] + over_w[2];
     let (areas, sums) = (area.is_positive_finite(), sum.is_positive_finite());
     let defined = [areas[0] & sums[0], areas[1] & sums[1]];
@@ -176,13 +183,25 @@ pub fn perspective_weights<S: Simd>(
     // Factors of a pair term: iwᵢ·iwⱼ / (Σ eₖ·iwₖ)².
     let one = F64x16::splat(simd, 1.0);
     let (per_area, per_sum) = (one / area, one / sum);
-    let scaled = [0, 1, 2].map(|i| inv_w[i] * per_sum * per_area);
+    let scaled = [
+        inv_w[0] * per_sum * per_area,
+        inv_w[1] * per_sum * per_area,
+        inv_w[2] * per_sum * per_area,
+    ];
     let zero = F64x16::splat(simd, 0.0);
-    let pairs = [(0, 1), (1, 2), (2, 0)].map(|(i, j)| (scaled[i] * scaled[j]).or(defined, zero));
+    let pairs = [
+        (scaled[0] * scaled[1]).or(defined, zero),
+        (scaled[1] * scaled[2]).or(defined, zero),
+        (scaled[2] * scaled[0]).or(defined, zero),
+    ];
 
     let third = F64x16::splat(simd, 1.0 / 3.0);
     PacketWeights {
-        weights: over_w.map(|a| (a / sum).or(defined, third)),
+        weights: [
+            (over_w[0] / sum).or(defined, third),
+            (over_w[1] / sum).or(defined, third),
+            (over_w[2] / sum).or(defined, third),
+        ],
         d_dx: weight_slopes(edges, edges_dx, &pairs, defined, zero),
         d_dy: weight_slopes(edges, edges_dy, &pairs, defined, zero),
     }
@@ -197,9 +216,23 @@ fn weight_slopes<S: Simd>(
     defined: [mask64x8<S>; 2],
     zero: F64x16<S>,
 ) -> [f32x16<S>; 3] {
-    let term = |k: usize, i: usize, j: usize| {
-        ((slopes[i] * edges[j] - edges[i] * slopes[j]) * pairs[k]).or(defined, zero)
-    };
-    let [a, b, c] = [term(0, 0, 1), term(1, 1, 2), term(2, 2, 0)];
+    let a = wronskian(edges, slopes, 0, 1) * pairs[0];
+    let b = wronskian(edges, slopes, 1, 2) * pairs[1];
+    let c = wronskian(edges, slopes, 2, 0) * pairs[2];
+    let [a, b, c] = [
+        a.or(defined, zero),
+        b.or(defined, zero),
+        c.or(defined, zero),
+    ];
     [(a - c).narrow(), (b - a).narrow(), (c - b).narrow()]
+}
+
+#[inline(always)]
+fn wronskian<S: Simd>(
+    edges: &[F64x16<S>; 3],
+    slopes: &[F64x16<S>; 3],
+    i: usize,
+    j: usize,
+) -> F64x16<S> {
+    slopes[i] * edges[j] - edges[i] * slopes[j]
 }

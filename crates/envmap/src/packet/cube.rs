@@ -1,6 +1,7 @@
 //! Lookups in cube maps.
 
 use fearless_simd::{Select, Simd, SimdBase, SimdFloat, SimdInt, f32x4, f32x16, i32x16};
+use glam::Vec4;
 use shading::packet::{Vec3x16, transposed};
 
 use crate::{CubeMap, IrradianceTable, SpecularTable};
@@ -13,7 +14,11 @@ pub fn irradiance<S: Simd>(simd: S, table: &IrradianceTable, normal: Vec3x16<S>)
     let cube = table.cube();
     let size = i32x16::splat(simd, size_i32(cube));
     let cells = on_cube.cells(size);
-    let [x, y, z, _] = transposed(simd, |lane| cells.bilinear(simd, cube, lane));
+    let [x, y, z, _] = transposed(
+        simd,
+        #[inline(always)]
+        |lane| cells.bilinear(simd, cube, lane),
+    );
     Vec3x16::new(x, y, z)
 }
 
@@ -31,16 +36,20 @@ pub fn specular<S: Simd>(
     let place = Place::of(simd, levels, roughness);
     let finer = on_cube.cells(place.size[0]);
     let coarser = on_cube.cells(place.size[1]);
-    let [x, y, z, _] = transposed(simd, |lane| {
-        let low = place.level[lane].cast_unsigned() as usize;
-        let value = finer.bilinear(simd, &levels[low].1, lane);
-        let fraction = place.fraction[lane];
-        if fraction == 0.0 {
-            return value;
-        }
-        let coarse = coarser.bilinear(simd, &levels[low + 1].1, lane);
-        value + (coarse - value) * fraction
-    });
+    let [x, y, z, _] = transposed(
+        simd,
+        #[inline(always)]
+        |lane| {
+            let low = place.level[lane].cast_unsigned() as usize;
+            let value = finer.bilinear(simd, &levels[low].1, lane);
+            let fraction = place.fraction[lane];
+            if fraction == 0.0 {
+                return value;
+            }
+            let coarse = coarser.bilinear(simd, &levels[low + 1].1, lane);
+            value + (coarse - value) * fraction
+        },
+    );
     Vec3x16::new(x, y, z)
 }
 
@@ -57,14 +66,11 @@ struct Place<S: Simd> {
 impl<S: Simd> Place<S> {
     #[inline(always)]
     fn of(simd: S, levels: &[(f32, CubeMap)], roughness: f32x16<S>) -> Self {
-        let int = |value: i32| i32x16::splat(simd, value);
-        let float = |value: f32| f32x16::splat(simd, value);
-        let size = |k: usize| int(size_i32(&levels[k.min(levels.len() - 1)].1));
-        let zero = float(0.0);
+        let size = |k: usize| size_i32(&levels[k.min(levels.len() - 1)].1);
         let mut place = Self {
-            level: int(0),
-            size: [size(0), size(1)],
-            fraction: zero,
+            level: i32x16::splat(simd, 0),
+            size: [i32x16::splat(simd, size(0)), i32x16::splat(simd, size(1))],
+            fraction: f32x16::splat(simd, 0.0),
         };
         // Below the first level and beyond the last, as for NaN, the fraction stays 0.
         for (k, pair) in levels.windows(2).enumerate() {
@@ -73,11 +79,14 @@ impl<S: Simd> Place<S> {
             let fraction = (roughness - low) / (high - low);
             let within = from_here & roughness.simd_lt(high);
             let beyond = roughness.simd_ge(high);
-            let next = int(i32::try_from(k + 1).unwrap_or(i32::MAX));
+            let next = i32x16::splat(simd, i32::try_from(k + 1).unwrap_or(i32::MAX));
+            let sizes = [size(k + 1), size(k + 2)];
             place.fraction = within.select(fraction, place.fraction);
             place.level = beyond.select(next, place.level);
-            place.size[0] = beyond.select(size(k + 1), place.size[0]);
-            place.size[1] = beyond.select(size(k + 2), place.size[1]);
+            place.size = [
+                beyond.select(i32x16::splat(simd, sizes[0]), place.size[0]),
+                beyond.select(i32x16::splat(simd, sizes[1]), place.size[1]),
+            ];
         }
         place
     }
@@ -93,7 +102,6 @@ struct OnCube<S: Simd> {
 impl<S: Simd> OnCube<S> {
     #[inline(always)]
     fn of(simd: S, d: Vec3x16<S>) -> Self {
-        let int = |value: i32| i32x16::splat(simd, value);
         let (ax, ay, az) = (d.x.abs(), d.y.abs(), d.z.abs());
         let on_z = az.simd_ge(ax) & az.simd_ge(ay);
         let on_y = ay.simd_ge(ax);
@@ -105,19 +113,19 @@ impl<S: Simd> OnCube<S> {
         let s_z = pz.select(d.x, -d.x);
         let t_y = py.select(d.z, minus_z);
         let s_x = px.select(minus_z, d.z);
-        let pick = |z: f32x16<S>, y: f32x16<S>, x: f32x16<S>| on_z.select(z, on_y.select(y, x));
-        let s = pick(s_z, d.x, s_x);
-        let t = pick(minus_y, t_y, minus_y);
-        let m = pick(az, ay, ax);
+        let s = on_z.select(s_z, on_y.select(d.x, s_x));
+        let t = on_z.select(minus_y, on_y.select(t_y, minus_y));
+        let m = on_z.select(az, on_y.select(ay, ax));
+        let [pos_x, neg_x, pos_y, neg_y, pos_z, neg_z] = faces(simd);
         let face = on_z.select(
-            pz.select(int(4), int(5)),
-            on_y.select(py.select(int(2), int(3)), px.select(int(0), int(1))),
+            pz.select(pos_z, neg_z),
+            on_y.select(py.select(pos_y, neg_y), px.select(pos_x, neg_x)),
         );
         let half = f32x16::splat(simd, 0.5);
         let (s, t) = (s / m * half + half, t / m * half + half);
         let sound = s.is_finite() & t.is_finite();
         Self {
-            face: sound.select(face, int(4)),
+            face: sound.select(face, pos_z),
             s: sound.select(s, half),
             t: sound.select(t, half),
         }
@@ -128,13 +136,8 @@ impl<S: Simd> OnCube<S> {
     fn cells(&self, size: i32x16<S>) -> Cells<S> {
         let texels: f32x16<S> = size.to_float();
         // In the framed face texel 0 is the frame, so centres stand at i + ½ + 1. Truncation is the floor.
-        let cell = |x: f32x16<S>| {
-            let i: i32x16<S> = x.to_int();
-            let i = i.min(size);
-            (i, x - i.to_float::<f32x16<S>>())
-        };
-        let (i, along_s) = cell(self.s * texels + 0.5);
-        let (j, along_t) = cell(self.t * texels + 0.5);
+        let (i, along_s) = cell(self.s * texels + 0.5, size);
+        let (j, along_t) = cell(self.t * texels + 0.5, size);
         let stride = size + 2;
         Cells {
             first: (self.face * stride + j) * stride + i,
@@ -143,6 +146,27 @@ impl<S: Simd> OnCube<S> {
             along_t,
         }
     }
+}
+
+/// The numbers of the faces.
+#[inline(always)]
+fn faces<S: Simd>(simd: S) -> [i32x16<S>; 6] {
+    [
+        i32x16::splat(simd, 0),
+        i32x16::splat(simd, 1),
+        i32x16::splat(simd, 2),
+        i32x16::splat(simd, 3),
+        i32x16::splat(simd, 4),
+        i32x16::splat(simd, 5),
+    ]
+}
+
+/// The whole part of 0 ≤ x, at most `size`, and what is left.
+#[inline(always)]
+fn cell<S: Simd>(x: f32x16<S>, size: i32x16<S>) -> (i32x16<S>, f32x16<S>) {
+    let i: i32x16<S> = x.to_int();
+    let i = i.min(size);
+    (i, x - i.to_float::<f32x16<S>>())
 }
 
 /// Four texels of a framed cube map for each lane, and where between them it reads.
@@ -160,15 +184,19 @@ impl<S: Simd> Cells<S> {
         let first = self.first[lane].cast_unsigned() as usize;
         let stride = self.stride[lane].cast_unsigned() as usize;
         let texels = &cube.framed_texels()[first..first + stride + 2];
-        let texel = |k: usize| f32x4::load_array(simd, texels[k].to_array());
         let along_s = self.along_s[lane];
-        let row = |k: usize| {
-            let left = texel(k);
-            left + (texel(k + 1) - left) * along_s
-        };
-        let top = row(0);
-        top + (row(stride) - top) * self.along_t[lane]
+        let top = between(simd, &texels[..2], along_s);
+        let bottom = between(simd, &texels[stride..], along_s);
+        top + (bottom - top) * self.along_t[lane]
     }
+}
+
+/// Linear between two texels.
+#[inline(always)]
+fn between<S: Simd>(simd: S, texels: &[Vec4], along: f32) -> f32x4<S> {
+    let left = f32x4::load_array(simd, texels[0].to_array());
+    let right = f32x4::load_array(simd, texels[1].to_array());
+    left + (right - left) * along
 }
 
 #[allow(

@@ -165,16 +165,6 @@ impl PackedPyramid {
     /// Where each lane's level lies; whole numbers below [`Self::levels`].
     #[inline(always)]
     pub(super) fn placed<S: Simd>(&self, simd: S, level: f32x16<S>) -> Placed<S> {
-<<<<<<< HEAD
-        let [w, h] = [self.size.x as f32, self.size.y as f32].map(|side| f32x16::splat(simd, side));
-        let one = f32x16::splat(simd, 1.0);
-        if self.levels == 1 {
-            return Placed {
-                width: w,
-                height: h,
-                column: one,
-                row: one,
-=======
         let first = level[0];
         if level.simd_eq(f32x16::splat(simd, first)).all_true() {
             let place = &self.places[level_index(first)];
@@ -183,7 +173,6 @@ impl PackedPyramid {
                 height: f32x16::splat(simd, place.height),
                 column: u32x16::splat(simd, place.column),
                 row: u32x16::splat(simd, place.row),
->>>>>>> main
             };
         }
         // 2⁻ᵏ by its exponent.

@@ -77,23 +77,6 @@ pub(super) fn filtered<S: Simd, A: Sums<S>, F: Finish<S>>(
         placed[1] = texture.placed(simd, (plan.fine + 1.0).min(last));
     }
     let mut sums = A::zero(simd);
-<<<<<<< HEAD
-    let mut lookup = Lookup {
-        simd,
-        texture,
-        texels,
-        sums: &mut sums,
-        nearest,
-    };
-    match plan.line {
-        None => {
-            lookup.levels(&plan, footprint.s, footprint.t, one);
-            sums.texels(simd, one)
-        }
-        Some(line) => {
-            lookup.line(&plan, &line, footprint);
-            sums.texels(simd, one / line.total)
-=======
     // A line's probes stand on either side of the middle: pair 0 before and after it, pair 1, and so on.
     let probes = plan.line.map_or(1, |line| 2 * line.pairs);
     for probe in 0..probes {
@@ -108,7 +91,6 @@ pub(super) fn filtered<S: Simd, A: Sums<S>, F: Finish<S>>(
         lookup.level(&mut sums, &placed[0], place, all - coarse);
         if levels == 2 {
             lookup.level(&mut sums, &placed[1], place, coarse);
->>>>>>> main
         }
     }
     let total = match plan.line {
@@ -167,43 +149,12 @@ impl<S: Simd, T> Lookup<'_, S, T> {
             weight,
         };
         let stride = self.texture.sheet().stride();
-<<<<<<< HEAD
-        let offsets = offset(stride, placed.column + column, placed.row + row);
-        self.sums
-            .add(self.simd, self.texels, stride as usize, offsets, &share);
-=======
         let offsets = (placed.row + row) * stride + (placed.column + column);
         sums.add(self.simd, self.texels, stride as usize, offsets, &share);
->>>>>>> main
     }
 
     /// The first of two neighbouring texels on an axis of `size`, −1 to size − 1, and the weight of the second.
     #[inline(always)]
-<<<<<<< HEAD
-    fn texel(&self, place: f32x16<S>, size: f32x16<S>) -> (f32x16<S>, f32x16<S>) {
-        let zero = f32x16::splat(self.simd, 0.0);
-        let position = place * size;
-        let minus_one = f32x16::splat(self.simd, -1.0);
-        let last = |first: f32x16<S>| first.min(size - 1.0);
-        let Some(nearest) = self.nearest else {
-            let from_centre = (position - 0.5).max(minus_one);
-            let first = last(from_centre.floor());
-            return (
-                first,
-                (from_centre - first).min(f32x16::splat(self.simd, 1.0)),
-            );
-        };
-        let from_centre =
-            (position - nearest.select(zero, f32x16::splat(self.simd, 0.5))).max(minus_one);
-        let first = last(from_centre.floor());
-        (
-            first,
-            nearest.select(
-                zero,
-                (from_centre - first).min(f32x16::splat(self.simd, 1.0)),
-            ),
-        )
-=======
     fn texel(&self, place: f32x16<S>, size: f32x16<S>) -> (u32x16<S>, u32x16<S>) {
         let bits = self.texture.fraction_bits();
         let half = f32x16::splat(self.simd, (1u32 << (bits - 1)) as f32);
@@ -224,7 +175,6 @@ impl<S: Simd, T> Lookup<'_, S, T> {
             Some(nearest) => (first, nearest.select(u32x16::splat(self.simd, 0), second)),
             None => (first, second),
         }
->>>>>>> main
     }
 }
 
@@ -255,14 +205,6 @@ pub(super) fn picked<S: Simd>(
     let column = u32x16::truncate_from((s * placed.width).min(placed.width - 1.0)) >> bits;
     let row = u32x16::truncate_from((t * placed.height).min(placed.height - 1.0)) >> bits;
     let stride = texture.sheet().stride();
-<<<<<<< HEAD
-    let offsets: [u32; 16] = offset(stride, placed.column + column, placed.row + row).to_array();
-    Some(
-        offsets
-            .map(|offset| texels[offset as usize])
-            .simd_into(simd),
-    )
-=======
     let offsets = (placed.row + row) * stride + (placed.column + column);
     let offsets: [u32; 16] = offsets.to_array();
     let mut codes = [0; 16];
@@ -270,5 +212,4 @@ pub(super) fn picked<S: Simd>(
         *code = texels[offset as usize];
     }
     Some(codes.simd_into(simd))
->>>>>>> main
 }

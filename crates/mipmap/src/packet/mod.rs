@@ -34,12 +34,7 @@ mod layout;
 mod lookup;
 mod plan;
 
-<<<<<<< HEAD
-use fearless_simd::prelude::*;
-use fearless_simd::{Simd, f32x16, u8x64, u16x32, u32x16};
-=======
 use fearless_simd::{Simd, f32x16, u32x16};
->>>>>>> main
 use sampler::Filter;
 use sampler::packet::{SheetTexels, Sums8, Sums16, SumsFloat, channels};
 

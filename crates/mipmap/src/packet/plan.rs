@@ -82,33 +82,22 @@ impl<S: Simd> Plan<S> {
             lambda -= packet_log2(simd, eta);
         }
         if state.lod_rule == LodRule::Exact {
-<<<<<<< HEAD
-            let cut = (ellipse.aspect / eta)
-                .min(f32x16::splat(simd, 2.0))
-                .max(one);
-=======
             let cut = if max_anisotropy == 1.0 {
                 ellipse.aspect
             } else {
                 ellipse.aspect / eta
             };
             let cut = cut.min(f32x16::splat(simd, 2.0)).max(one);
->>>>>>> main
             lambda -= packet_log2(simd, cut) * CUT_SHARPENING;
         }
         let lambda = bounded.select(lambda, f32x16::splat(simd, f32::INFINITY));
         let lambda = limited(simd, state, lambda);
         let (fine, fraction) = levels(simd, texture, state.mip, lambda);
-<<<<<<< HEAD
-        let line = (max_anisotropy > 1.0 && eta.simd_gt(one).any_true())
-            .then(|| Line::of(simd, texture, &ellipse, eta));
-=======
         let line = if max_anisotropy > 1.0 && eta.simd_gt(one).any_true() {
             Some(Line::of(simd, texture, &ellipse, eta))
         } else {
             None
         };
->>>>>>> main
         Self {
             fine,
             fraction,
@@ -188,11 +177,7 @@ fn followed<S: Simd>(
 /// λ with bias and limits; NaN never passes.
 #[inline(always)]
 fn limited<S: Simd>(simd: S, state: &SamplerState, lambda: f32x16<S>) -> f32x16<S> {
-<<<<<<< HEAD
-    let splat = |x| f32x16::splat(simd, x);
-=======
     let infinite = f32x16::splat(simd, f32::INFINITY);
->>>>>>> main
     let bias = if state.lod_bias.is_nan() {
         0.0
     } else {
@@ -204,20 +189,12 @@ fn limited<S: Simd>(simd: S, state: &SamplerState, lambda: f32x16<S>) -> f32x16<
     let below = if greatest.is_nan() {
         biased
     } else {
-<<<<<<< HEAD
-        biased.min(splat(greatest))
-=======
         biased.min(f32x16::splat(simd, greatest))
->>>>>>> main
     };
     if least.is_nan() {
         below
     } else {
-<<<<<<< HEAD
-        below.max(splat(least))
-=======
         below.max(f32x16::splat(simd, least))
->>>>>>> main
     }
 }
 

@@ -24,12 +24,8 @@ pub const PACKET_MAX_DIFFERENCE: f32 = 1e-6;
 #[inline(always)]
 #[must_use]
 pub fn decode_normal<S: Simd>(simd: S, texel: Vec3x16<S>, scale: f32) -> Vec3x16<S> {
-    let one = f32x16::splat(simd, 1.0);
-    let decoded = |x: f32x16<S>| x * 2.0 - one;
-    let direction = Vec3x16::new(
-        decoded(texel.x) * scale,
-        decoded(texel.y) * scale,
-        decoded(texel.z),
-    );
+    let one = Vec3x16::grey(f32x16::splat(simd, 1.0));
+    let Vec3x16 { x, y, z } = texel * 2.0 - one;
+    let direction = Vec3x16::new(x * scale, y * scale, z);
     direction.select(direction.is_finite(), Vec3x16::splat(simd, Vec3::Z))
 }

@@ -22,21 +22,32 @@ pub fn reflectance<S: Simd>(
     let cell = j * size_i32() + i;
     // Two neighbours in a row lie together: (x, y) of each.
     let entries = table.entries();
-    let row = |below: usize| {
-        move |lane: usize| {
-            let first = 2 * (cell[lane].cast_unsigned() as usize + below);
-            f32x4::from_slice(simd, &entries[first..first + 4])
-        }
-    };
-    let low = transposed(simd, row(0));
-    let high = transposed(simd, row(SIZE));
-    let (past_u, past_v) = (one(u) - u, one(v) - v);
-    let blend = |k: usize| {
-        let low = low[k] * past_u + low[k + 2] * u;
-        let high = high[k] * past_u + high[k + 2] * u;
-        low * past_v + high * v
-    };
-    [blend(0), blend(1)]
+    let [x00, y00, x10, y10] = transposed(
+        simd,
+        #[inline(always)]
+        |lane| pair(simd, entries, cell[lane], 0),
+    );
+    let [x01, y01, x11, y11] = transposed(
+        simd,
+        #[inline(always)]
+        |lane| pair(simd, entries, cell[lane], SIZE),
+    );
+    [
+        lerp(lerp(x00, x10, u), lerp(x01, x11, u), v),
+        lerp(lerp(y00, y10, u), lerp(y01, y11, u), v),
+    ]
+}
+
+/// An entry of the table and the next in its row.
+#[inline(always)]
+fn pair<S: Simd>(simd: S, entries: &[f32], cell: i32, below: usize) -> f32x4<S> {
+    let first = 2 * (cell.cast_unsigned() as usize + below);
+    f32x4::from_slice(simd, &entries[first..first + 4])
+}
+
+#[inline(always)]
+fn lerp<S: Simd>(a: f32x16<S>, b: f32x16<S>, t: f32x16<S>) -> f32x16<S> {
+    a * (one(t) - t) + b * t
 }
 
 /// Cells and fractions of coordinates in 0..=1.

@@ -78,7 +78,10 @@ impl<S: Simd> Surface<S> {
     pub fn from_metallic_roughness(material: &MetallicRoughness<S>, dielectric_f0: f32) -> Self {
         let metallic = unit_or_zero(material.metallic);
         let past_metallic = one(metallic) - metallic;
-        let f0 = (material.specular_color * dielectric_f0).map(|x| at_most(x, 1.0));
+        let f0 = (material.specular_color * dielectric_f0).map(
+            #[inline(always)]
+            |x| at_most(x, 1.0),
+        );
         let dielectric = Fresnel {
             f0: f0 * material.specular,
             f90: material.specular,
@@ -150,9 +153,8 @@ impl<S: Simd> Surface<S> {
         let zero = one(alpha) * 0.0;
         let faces = n_dot_h.simd_gt(0.0);
         let distribution = faces.select(a2 / (bracket * bracket * PI), zero);
-        let past_a2 = one(a2) - a2;
-        let masked = |cos: f32x16<S>| (a2 + past_a2 * cos * cos).sqrt();
-        let visibility = like_half(alpha) / (n_dot_l * masked(n_dot_v) + n_dot_v * masked(n_dot_l));
+        let sum = n_dot_l * masked(a2, n_dot_v) + n_dot_v * masked(a2, n_dot_l);
+        let visibility = one(alpha) * 0.5 / sum;
         let specular = self.specular_fresnel.at(v_dot_h) * (distribution * visibility);
 
         // Diffuse base: what the layer above it lets through.
@@ -178,9 +180,10 @@ impl<S: Simd> Surface<S> {
     }
 }
 
+/// √(α² + (1 − α²)·cos²).
 #[inline(always)]
-fn like_half<S: Simd>(like: f32x16<S>) -> f32x16<S> {
-    one(like) * 0.5
+fn masked<S: Simd>(a2: f32x16<S>, cos: f32x16<S>) -> f32x16<S> {
+    (a2 + (one(a2) - a2) * cos * cos).sqrt()
 }
 
 /// Share of constant light that leaves a layer after one and after more reflections.
@@ -190,18 +193,10 @@ fn scattered<S: Simd>(
     reflectance: [f32x16<S>; 2],
 ) -> (Vec3x16<S>, Vec3x16<S>) {
     let [scale, bias] = reflectance;
-    let white = one(scale);
-    let lost = white - (scale + bias);
-    let grazing = fresnel.f90 * bias;
-    let channel = |f0: f32x16<S>| {
-        let mean = f0 + (fresnel.f90 - f0) / 21.0;
-        let single = f0 * scale + grazing;
-        (single, single * mean * lost / (white - mean * lost))
-    };
-    let (x, y, z) = (
-        channel(fresnel.f0.x),
-        channel(fresnel.f0.y),
-        channel(fresnel.f0.z),
-    );
-    (Vec3x16::new(x.0, y.0, z.0), Vec3x16::new(x.1, y.1, z.1))
+    let lost = Vec3x16::grey(one(scale) - (scale + bias));
+    let white = Vec3x16::grey(one(scale));
+    let (f0, f90) = (fresnel.f0, Vec3x16::grey(fresnel.f90));
+    let mean = f0 + (f90 - f0) * (1.0 / 21.0);
+    let single = f0 * scale + f90 * bias;
+    (single, single * mean * lost / (white - mean * lost))
 }

@@ -1,6 +1,6 @@
 //! Sixteen vectors.
 
-use core::ops::{Add, AddAssign, Mul, Neg, Sub};
+use core::ops::{Add, AddAssign, Div, Mul, Neg, Sub};
 
 use fearless_simd::{ExtractToken, Select, Simd, SimdBase, SimdFloat, f32x16, mask32x16};
 use glam::Vec3;
@@ -130,7 +130,7 @@ impl<S: Simd> Vec3x16<S> {
         self * (one(t) - t) + other * t
     }
 
-    /// Each component through a function.
+    /// Each component through a function; a closure needs `#[inline(always)]`.
     #[inline(always)]
     #[must_use]
     pub fn map(self, f: impl Fn(f32x16<S>) -> f32x16<S>) -> Self {
@@ -173,6 +173,15 @@ impl<S: Simd> Mul for Vec3x16<S> {
     #[inline(always)]
     fn mul(self, other: Self) -> Self {
         Self::new(self.x * other.x, self.y * other.y, self.z * other.z)
+    }
+}
+
+/// Component by component.
+impl<S: Simd> Div for Vec3x16<S> {
+    type Output = Self;
+    #[inline(always)]
+    fn div(self, other: Self) -> Self {
+        Self::new(self.x / other.x, self.y / other.y, self.z / other.z)
     }
 }
 

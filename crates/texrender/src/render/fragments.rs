@@ -60,7 +60,8 @@ impl<'a, S: Simd> Fragments<'a, S> {
     ) -> Self {
         let rows = Rows::new(simd, layout, lanes, records);
         let points = Points::new(&rows, positions);
-        let weights = points.weights.weights.map(F64x16::narrow);
+        let [b0, b1, b2] = points.weights.weights;
+        let weights = [b0.narrow(), b1.narrow(), b2.narrow()];
         let mut made = Self {
             simd,
             frame,
@@ -96,15 +97,20 @@ impl<'a, S: Simd> Fragments<'a, S> {
     /// Σ bᵢ·aᵢ of the first three numbers of three narrow rows.
     #[inline(always)]
     fn interpolated(&self, corners: &[[f32x16<S>; 4]; 3], weights: [f32x16<S>; 3]) -> Vec3x16<S> {
-        let sum = |k: usize| {
-            corners[0][k] * weights[0] + corners[1][k] * weights[1] + corners[2][k] * weights[2]
-        };
-        Vec3x16::new(sum(0), sum(1), sum(2))
+        Vec3x16::new(
+            weighted(corners, weights, 0),
+            weighted(corners, weights, 1),
+            weighted(corners, weights, 2),
+        )
     }
 
     #[inline(always)]
     fn corners(&self, row: usize) -> [[f32x16<S>; 4]; 3] {
-        [0, 1, 2].map(|corner| self.rows.narrow(row + corner))
+        [
+            self.rows.narrow(row),
+            self.rows.narrow(row + 1),
+            self.rows.narrow(row + 2),
+        ]
     }
 
     /// Positions in the world, if the layout has them.
@@ -114,11 +120,18 @@ impl<'a, S: Simd> Fragments<'a, S> {
             return [F64x16::splat(self.simd, 0.0); 3];
         }
         let row = self.layout.position_row();
+        [
+            self.position(row),
+            self.position(row + 1),
+            self.position(row + 2),
+        ]
+    }
+
+    #[inline(always)]
+    fn position(&self, row: usize) -> F64x16<S> {
         let [b0, b1, b2] = self.points.weights.weights;
-        [0, 1, 2].map(|axis| {
-            let [p0, p1, p2, _] = self.rows.wide(row + axis);
-            p0 * b0 + p1 * b1 + p2 * b2
-        })
+        let [p0, p1, p2, _] = self.rows.wide(row);
+        p0 * b0 + p1 * b1 + p2 * b2
     }
 
     /// Linear vertex colours and alpha.
@@ -129,9 +142,7 @@ impl<'a, S: Simd> Fragments<'a, S> {
         }
         let corners = self.corners(self.layout.color_row());
         let Vec3x16 { x, y, z } = self.interpolated(&corners, self.weights);
-        let [a, b, c] = self.weights;
-        let alpha = corners[0][3] * a + corners[1][3] * b + corners[2][3] * c;
-        Some([x, y, z, alpha])
+        Some([x, y, z, weighted(&corners, self.weights, 3)])
     }
 
     /// Texture coordinates of a set; zero if the layout does not read it.
@@ -148,15 +159,8 @@ impl<'a, S: Simd> Fragments<'a, S> {
     #[inline(always)]
     fn coordinates_at(&self, place: usize) -> Coordinates<S> {
         let row = self.layout.set_row(place);
-        let weights = &self.points.weights;
-        let axis = |row: usize| {
-            let [first, toward_1, toward_2, _] = self.rows.wide(row);
-            let value = first + toward_1 * weights.weights[1] + toward_2 * weights.weights[2];
-            let (toward_1, toward_2) = (toward_1.narrow(), toward_2.narrow());
-            let slope = |d: &[f32x16<S>; 3]| toward_1 * d[1] + toward_2 * d[2];
-            (value, slope(&weights.d_dx), slope(&weights.d_dy))
-        };
-        let ((s, ds_dx, ds_dy), (t, dt_dx, dt_dy)) = (axis(row), axis(row + 1));
+        let (s, ds_dx, ds_dy) = self.coordinate(row);
+        let (t, dt_dx, dt_dy) = self.coordinate(row + 1);
         let mut made = Coordinates {
             s,
             t,
@@ -169,6 +173,21 @@ impl<'a, S: Simd> Fragments<'a, S> {
             made.scale(self.footprint);
         }
         made
+    }
+
+    /// A coordinate and its derivatives, from the wide row of its corners.
+    #[inline(always)]
+    fn coordinate(&self, row: usize) -> (F64x16<S>, f32x16<S>, f32x16<S>) {
+        let weights = &self.points.weights;
+        let [_, b1, b2] = weights.weights;
+        let [first, toward_1, toward_2, _] = self.rows.wide(row);
+        let value = first + toward_1 * b1 + toward_2 * b2;
+        let (toward_1, toward_2) = (toward_1.narrow(), toward_2.narrow());
+        (
+            value,
+            toward_1 * weights.d_dx[1] + toward_2 * weights.d_dx[2],
+            toward_1 * weights.d_dy[1] + toward_2 * weights.d_dy[2],
+        )
     }
 
     /// The texture coordinates of a map, transform applied.
@@ -237,12 +256,14 @@ impl<'a, S: Simd> Fragments<'a, S> {
         let direction = direction.select(sound, Vec3x16::splat(simd, glam::Vec3::Z));
         // ∂(n/‖n‖) = (∂n − n̂ (n̂·∂n)) / ‖n‖.
         let scale = self.splat(self.footprint) / length;
-        let slope = |weights: [f32x16<S>; 3]| {
-            let change = self.interpolated(&corners, weights);
-            (change - direction * direction.dot(change)) * scale
-        };
         let weights = &self.points.weights;
-        let variance = curvature_variance(simd, slope(weights.d_dx), slope(weights.d_dy));
+        let along_x = self.interpolated(&corners, weights.d_dx);
+        let along_y = self.interpolated(&corners, weights.d_dy);
+        let variance = curvature_variance(
+            simd,
+            (along_x - direction * direction.dot(along_x)) * scale,
+            (along_y - direction * direction.dot(along_y)) * scale,
+        );
         let variance = sound.select(variance, flat);
         (
             ShadingNormals {
@@ -275,7 +296,12 @@ impl<'a, S: Simd> Fragments<'a, S> {
     /// A colour in every lane.
     #[inline(always)]
     pub(super) fn color(&self, color: Vec4) -> [f32x16<S>; 4] {
-        color.to_array().map(|channel| self.splat(channel))
+        [
+            self.splat(color.x),
+            self.splat(color.y),
+            self.splat(color.z),
+            self.splat(color.w),
+        ]
     }
 }
 
@@ -305,25 +331,46 @@ impl<S: Simd> Coordinates<S> {
     #[inline(always)]
     fn transformed(&self, simd: S, transform: &AffineTransform) -> Self {
         let matrix = &transform.matrix;
-        let wide = |value: f64| F64x16::splat(simd, value);
-        let (column_s, column_t) = (matrix.matrix2.x_axis, matrix.matrix2.y_axis);
-        let moved = |a: f64, b: f64, c: f64| self.s * wide(a) + self.t * wide(b) + wide(c);
         let linear = matrix.matrix2.as_mat2();
-        let turned = |s: f32x16<S>, t: f32x16<S>| {
-            (
-                s * linear.x_axis.x + t * linear.y_axis.x,
-                s * linear.x_axis.y + t * linear.y_axis.y,
-            )
-        };
-        let (ds_dx, dt_dx) = turned(self.ds_dx, self.dt_dx);
-        let (ds_dy, dt_dy) = turned(self.ds_dy, self.dt_dy);
+        let (along_s, along_t) = (linear.x_axis, linear.y_axis);
         Self {
-            s: moved(column_s.x, column_t.x, matrix.translation.x),
-            t: moved(column_s.y, column_t.y, matrix.translation.y),
-            ds_dx,
-            dt_dx,
-            ds_dy,
-            dt_dy,
+            s: self.moved(
+                simd,
+                [
+                    matrix.matrix2.x_axis.x,
+                    matrix.matrix2.y_axis.x,
+                    matrix.translation.x,
+                ],
+            ),
+            t: self.moved(
+                simd,
+                [
+                    matrix.matrix2.x_axis.y,
+                    matrix.matrix2.y_axis.y,
+                    matrix.translation.y,
+                ],
+            ),
+            ds_dx: self.ds_dx * along_s.x + self.dt_dx * along_t.x,
+            dt_dx: self.ds_dx * along_s.y + self.dt_dx * along_t.y,
+            ds_dy: self.ds_dy * along_s.x + self.dt_dy * along_t.x,
+            dt_dy: self.ds_dy * along_s.y + self.dt_dy * along_t.y,
         }
     }
+
+    /// a·s + b·t + c.
+    #[inline(always)]
+    fn moved(&self, simd: S, [a, b, c]: [f64; 3]) -> F64x16<S> {
+        let [a, b] = [F64x16::splat(simd, a), F64x16::splat(simd, b)];
+        self.s * a + self.t * b + F64x16::splat(simd, c)
+    }
+}
+
+/// Σ bᵢ·aᵢ of one number of three rows.
+#[inline(always)]
+fn weighted<S: Simd>(
+    corners: &[[f32x16<S>; 4]; 3],
+    weights: [f32x16<S>; 3],
+    k: usize,
+) -> f32x16<S> {
+    corners[0][k] * weights[0] + corners[1][k] * weights[1] + corners[2][k] * weights[2]
 }

@@ -98,8 +98,9 @@ impl Rays {
     /// Unit directions toward the viewer at points of the picture, in pixels from its top left corner.
     #[inline(always)]
     pub(super) fn toward<S: Simd>(&self, simd: S, x: f32x16<S>, y: f32x16<S>) -> Vec3x16<S> {
-        let splat = |v| Vec3x16::splat(simd, v);
-        let ray = splat(self.corner) + splat(self.along_x) * x + splat(self.along_y) * y;
+        let ray = Vec3x16::splat(simd, self.corner)
+            + Vec3x16::splat(simd, self.along_x) * x
+            + Vec3x16::splat(simd, self.along_y) * y;
         ray * (f32x16::splat(simd, 1.0) / ray.length())
     }
 }

@@ -7,7 +7,7 @@ use raster::SUBPIXELS;
 use shading::packet::{LANES, transposed, transposed_f64};
 use texcoord::packet::{F64x16, PacketWeights, perspective_weights};
 
-use super::layout::{EDGE_ROWS, Layout};
+use super::layout::Layout;
 use super::record::Records;
 
 /// Where sixteen lanes look, and which record each reads.
@@ -97,23 +97,44 @@ impl<'a, S: Simd> Rows<'a, S> {
     /// The four numbers of a narrow row.
     #[inline(always)]
     pub(super) fn narrow(&self, row: usize) -> [f32x16<S>; 4] {
-        let rows = &self.records.narrow[row..];
-        let at = |lane: usize| rows[self.lanes.record[lane] as usize * self.narrow];
+        let (simd, rows) = (self.simd, &self.records.narrow[row..]);
+        let (records, stride) = (&self.lanes.record, self.narrow);
         if self.alike {
-            return at(0).map(|value| f32x16::splat(self.simd, value));
+            let [a, b, c, d] = rows[records[0] as usize * stride];
+            return [
+                f32x16::splat(simd, a),
+                f32x16::splat(simd, b),
+                f32x16::splat(simd, c),
+                f32x16::splat(simd, d),
+            ];
         }
-        transposed(self.simd, |lane| f32x4::load_array(self.simd, at(lane)))
+        transposed(
+            simd,
+            #[inline(always)]
+            |lane| f32x4::load_array(simd, rows[records[lane] as usize * stride]),
+        )
     }
 
     /// The four numbers of a wide row.
     #[inline(always)]
     pub(super) fn wide(&self, row: usize) -> [F64x16<S>; 4] {
-        let rows = &self.records.wide[row..];
-        let at = |lane: usize| rows[self.lanes.record[lane] as usize * self.wide];
+        let (simd, rows) = (self.simd, &self.records.wide[row..]);
+        let (records, stride) = (&self.lanes.record, self.wide);
         if self.alike {
-            return at(0).map(|value| F64x16::splat(self.simd, value));
+            let [a, b, c, d] = rows[records[0] as usize * stride];
+            return [
+                F64x16::splat(simd, a),
+                F64x16::splat(simd, b),
+                F64x16::splat(simd, c),
+                F64x16::splat(simd, d),
+            ];
         }
-        transposed_f64(self.simd, |lane| f64x4::load_array(self.simd, at(lane))).map(F64x16)
+        let [a, b, c, d] = transposed_f64(
+            simd,
+            #[inline(always)]
+            |lane| f64x4::load_array(simd, rows[records[lane] as usize * stride]),
+        );
+        [F64x16(a), F64x16(b), F64x16(c), F64x16(d)]
     }
 }
 
@@ -130,61 +151,79 @@ impl<S: Simd> Points<S> {
     #[inline(always)]
     pub(super) fn new(rows: &Rows<'_, S>, positions: &[IVec2]) -> Self {
         let (simd, lanes) = (rows.simd, rows.lanes);
-        let corners: [[F64x16<S>; 4]; EDGE_ROWS] = [0, 1, 2].map(|corner| rows.wide(corner));
-        let whole = |v: &[i32; LANES]| i32x16::load_array(simd, *v).to_float::<f32x16<S>>();
-        let (x, y) = (whole(&lanes.x), whole(&lanes.y));
-        let edges_at = |x: F64x16<S>, y: F64x16<S>, count: F64x16<S>| {
-            corners.map(|[a, b, c, _]| a * x + b * y + c * count)
-        };
-        let unit = F64x16::splat(simd, f64::from(SUBPIXELS));
-        let inv_w = corners.map(|[_, _, _, inv_w]| inv_w);
-        let weights = |edges: &[F64x16<S>; 3], per_pixel: F64x16<S>| {
-            let along_x = corners.map(|[a, ..]| a * per_pixel);
-            let along_y = corners.map(|[_, b, ..]| b * per_pixel);
-            perspective_weights(simd, edges, &along_x, &along_y, &inv_w)
-        };
+        let corners = [rows.wide(0), rows.wide(1), rows.wide(2)];
 
         // At the centres, where they are inside.
+        let whole_x: f32x16<S> = i32x16::load_array(simd, lanes.x).to_float();
+        let whole_y: f32x16<S> = i32x16::load_array(simd, lanes.y).to_float();
+        let (x, y) = (F64x16::widen(whole_x), F64x16::widen(whole_y));
         let one = F64x16::splat(simd, 1.0);
-        let edges = edges_at(F64x16::widen(x), F64x16::widen(y), one);
+        let mut edges = edges_at(&corners, x, y, one);
+        let mut place = [
+            whole_x * (1.0 / SUBPIXELS as f32),
+            whole_y * (1.0 / SUBPIXELS as f32),
+        ];
+        let mut per_pixel = F64x16::splat(simd, f64::from(SUBPIXELS));
         let outside = lanes.outside(&edges);
-        let per_unit = 1.0 / SUBPIXELS as f32;
-        if outside == 0 {
-            return Self {
-                x: x * per_unit,
-                y: y * per_unit,
-                weights: weights(&edges, unit),
-            };
+        if outside != 0 {
+            // Edge functions are affine: their sums over samples are the values at the mean, times the count.
+            let [x, y, count] = lanes.sums(outside, positions);
+            let x = F64x16::from_array(simd, &x);
+            let y = F64x16::from_array(simd, &y);
+            let count = F64x16::from_array(simd, &count);
+            edges = edges_at(&corners, x, y, count);
+            per_pixel = per_pixel * count;
+            place = [(x / per_pixel).narrow(), (y / per_pixel).narrow()];
         }
 
-        // Edge functions are affine: their sums over samples are the values at the mean, times the count.
-        let sums = lanes.sums(outside, positions);
-        let [x, y, count] = sums.map(|sum| F64x16::from_array(simd, &sum));
-        let edges = edges_at(x, y, count);
-        let scale = count * unit;
+        let [p, q, r] = corners;
+        let along_x = [p[0] * per_pixel, q[0] * per_pixel, r[0] * per_pixel];
+        let along_y = [p[1] * per_pixel, q[1] * per_pixel, r[1] * per_pixel];
+        let inv_w = [p[3], q[3], r[3]];
+        let [x, y] = place;
         Self {
-            x: (x / scale).narrow(),
-            y: (y / scale).narrow(),
-            weights: weights(&edges, scale),
+            x,
+            y,
+            weights: perspective_weights(simd, &edges, &along_x, &along_y, &inv_w),
         }
     }
+}
+
+/// Edge functions, summed over `count` points.
+#[inline(always)]
+fn edges_at<S: Simd>(
+    [p, q, r]: &[[F64x16<S>; 4]; 3],
+    x: F64x16<S>,
+    y: F64x16<S>,
+    count: F64x16<S>,
+) -> [F64x16<S>; 3] {
+    [
+        p[0] * x + p[1] * y + p[2] * count,
+        q[0] * x + q[1] * y + q[2] * count,
+        r[0] * x + r[1] * y + r[2] * count,
+    ]
+}
+
+/// A bit for each of eight lanes where an edge function is negative.
+#[inline(always)]
+fn negative<S: Simd>([p, q, r]: &[F64x16<S>; 3], half: usize) -> u64 {
+    let (p, q, r) = (p.0[half], q.0[half], r.0[half]);
+    (p.simd_lt(0.0) | q.simd_lt(0.0) | r.simd_lt(0.0)).to_bitmask()
 }
 
 impl Lanes {
     /// Lanes whose point is outside their triangle and may move, a bit each.
     #[inline(always)]
     fn outside<S: Simd>(&self, edges: &[F64x16<S>; 3]) -> u32 {
-        let negative = |half: usize| {
-            let [a, b, c] = edges.map(|edge| edge.0[half].simd_lt(0.0));
-            (a | b | c).to_bitmask()
-        };
-        let bits = negative(0) | negative(1) << (LANES / 2);
+        let bits = negative(edges, 0) | negative(edges, 1) << (LANES / 2);
         if bits == 0 {
             return 0;
         }
-        (0..LANES)
-            .filter(|&lane| bits >> lane & 1 == 1 && self.mask[lane] != 0)
-            .fold(0, |moving, lane| moving | 1 << lane)
+        let mut moving = 0;
+        for (lane, mask) in self.mask.iter().enumerate() {
+            moving |= u32::from(bits >> lane & 1 == 1 && *mask != 0) << lane;
+        }
+        moving
     }
 
     /// Sums of x and y over the samples of lanes in `moving`, and their number; of other lanes the point alone.

@@ -60,13 +60,14 @@ pub(super) fn shade<S: Simd>(
     // A picture never holds NaN.
     let finite = color.is_finite();
     let black = Vec3x16::grey(fragments.splat(0.0));
-    (color.select(finite, black).map(at_least_zero), alpha)
+    let Vec3x16 { x, y, z } = color.select(finite, black);
+    let color = Vec3x16::new(at_least_zero(x), at_least_zero(y), at_least_zero(z));
+    (color, alpha)
 }
 
 /// Base colour and alpha: factor, vertex colour and map.
 #[inline(always)]
 fn base_color<S: Simd>(fragments: &Fragments<'_, S>, kernel: &Kernel) -> [f32x16<S>; 4] {
-    let times = |a: [f32x16<S>; 4], b: [f32x16<S>; 4]| [0, 1, 2, 3].map(|k| a[k] * b[k]);
     let mut color = fragments.color(kernel.base_color);
     if let Some(vertex_colors) = fragments.vertex_colors() {
         color = times(color, vertex_colors);
@@ -75,6 +76,11 @@ fn base_color<S: Simd>(fragments: &Fragments<'_, S>, kernel: &Kernel) -> [f32x16
         Some(map) => times(color, fragments.sample(map)),
         None => color,
     }
+}
+
+#[inline(always)]
+fn times<S: Simd>(a: [f32x16<S>; 4], b: [f32x16<S>; 4]) -> [f32x16<S>; 4] {
+    [a[0] * b[0], a[1] * b[1], a[2] * b[2], a[3] * b[3]]
 }
 
 /// Alpha, for the alpha test.
@@ -119,8 +125,8 @@ fn reflected<S: Simd>(
     // Punctual lights.
     let mut sum = Vec3x16::grey(fragments.splat(0.0));
     if !frame.plan.lights.is_empty() {
-        let [x, y, z] = fragments.positions().map(F64x16::narrow);
-        let points = Vec3x16::new(x, y, z);
+        let [x, y, z] = fragments.positions();
+        let points = Vec3x16::new(x.narrow(), y.narrow(), z.narrow());
         for light in &frame.plan.lights {
             sum += surface.reflected(normal, view, &incident(simd, light, points));
         }
@@ -156,27 +162,17 @@ fn surface<S: Simd>(
     model: &Reflectance,
     base: Vec3x16<S>,
 ) -> Surface<S> {
-    let simd = fragments.simd;
-    let sample = |map: &Option<Map>| map.as_ref().map(|map| fragments.sample(map));
-    let scaled = |factor: f32, texel: Option<f32x16<S>>| match texel {
-        Some(texel) => texel * factor,
-        None => fragments.splat(factor),
-    };
-    let tinted = |factor: Vec3, texel: Option<[f32x16<S>; 4]>| {
-        let factor = Vec3x16::splat(simd, factor);
-        texel.map_or(factor, |texel| factor * rgb(texel))
-    };
     match model {
         Reflectance::SpecularGlossiness {
             specular,
             glossiness,
             map,
         } => {
-            let texel = sample(map);
+            let texel = sampled(fragments, map);
             Surface::from_specular_glossiness(&SpecularGlossiness {
                 diffuse: base,
-                specular: tinted(*specular, texel),
-                glossiness: scaled(*glossiness, texel.map(|texel| texel[3])),
+                specular: tinted(fragments, *specular, texel),
+                glossiness: scaled(fragments, *glossiness, texel, 3),
             })
         }
         Reflectance::MetallicRoughness {
@@ -189,16 +185,55 @@ fn surface<S: Simd>(
             specular_color,
             specular_color_map,
         } => {
-            let texel = sample(map);
+            let texel = sampled(fragments, map);
+            let strength = sampled(fragments, specular_map);
+            let tint = sampled(fragments, specular_color_map);
             let material = MetallicRoughness {
                 base_color: base,
-                metallic: scaled(*metallic, texel.map(|texel| texel[2])),
-                roughness: scaled(*roughness, texel.map(|texel| texel[1])),
-                specular: scaled(*specular, sample(specular_map).map(|texel| texel[3])),
-                specular_color: tinted(*specular_color, sample(specular_color_map)),
+                metallic: scaled(fragments, *metallic, texel, 2),
+                roughness: scaled(fragments, *roughness, texel, 1),
+                specular: scaled(fragments, *specular, strength, 3),
+                specular_color: tinted(fragments, *specular_color, tint),
             };
             Surface::from_metallic_roughness(&material, dielectric_f0(*ior))
         }
+    }
+}
+
+/// Texels of a map, if there is one.
+#[inline(always)]
+fn sampled<S: Simd>(fragments: &Fragments<'_, S>, map: &Option<Map>) -> Option<[f32x16<S>; 4]> {
+    match map {
+        Some(map) => Some(fragments.sample(map)),
+        None => None,
+    }
+}
+
+/// A factor times a channel of the map that varies it.
+#[inline(always)]
+fn scaled<S: Simd>(
+    fragments: &Fragments<'_, S>,
+    factor: f32,
+    texel: Option<[f32x16<S>; 4]>,
+    channel: usize,
+) -> f32x16<S> {
+    match texel {
+        Some(texel) => texel[channel] * factor,
+        None => fragments.splat(factor),
+    }
+}
+
+/// A colour times that of the map that varies it.
+#[inline(always)]
+fn tinted<S: Simd>(
+    fragments: &Fragments<'_, S>,
+    factor: Vec3,
+    texel: Option<[f32x16<S>; 4]>,
+) -> Vec3x16<S> {
+    let factor = Vec3x16::splat(fragments.simd, factor);
+    match texel {
+        Some(texel) => factor * rgb(texel),
+        None => factor,
     }
 }
 

@@ -52,8 +52,12 @@ pub(super) fn sample<S: Simd>(
 fn unpremultiplied<S: Simd>(simd: S, [r, g, b, alpha]: [f32x16<S>; 4]) -> [f32x16<S>; 4] {
     let zero = f32x16::splat(simd, 0.0);
     let covered = alpha.simd_gt(zero);
-    let straight = |channel: f32x16<S>| covered.select(channel / alpha, zero);
-    [straight(r), straight(g), straight(b), alpha]
+    [
+        covered.select(r / alpha, zero),
+        covered.select(g / alpha, zero),
+        covered.select(b / alpha, zero),
+        alpha,
+    ]
 }
 
 /// For filters that read no packets.
@@ -63,7 +67,13 @@ fn one_by_one<S: Simd>(simd: S, frame: &Frame, map: &Map, at: &Coordinates<S>) -
     let texels = at
         .footprints()
         .map(|footprint| read(pyramid, map, &footprint).0);
-    [0, 1, 2, 3].map(|channel| f32x16::from_fn(simd, |lane| texels[lane][channel]))
+    let mut channels = [f32x16::splat(simd, 0.0); 4];
+    for (lane, texel) in texels.iter().enumerate() {
+        for (channel, value) in channels.iter_mut().zip(texel.to_array()) {
+            channel[lane] = value;
+        }
+    }
+    channels
 }
 
 /// Levels of detail that a map is read at.
