@@ -1,8 +1,9 @@
 //! Which triangles may touch which tile.
 
 use crate::Triangle;
-use crate::coverage::{EdgeSet, pixel_bounds};
-use crate::tile::{Rect, TileGrid};
+use crate::samples::SampleExtent;
+use crate::setup::{Extent, Setup};
+use crate::tile::TileGrid;
 
 /// For every tile the triangles that may touch it, in the order they were submitted.
 ///
@@ -25,7 +26,12 @@ impl Bins {
     pub fn build(grid: &TileGrid, triangles: &[Triangle]) -> Self {
         let mut touched: Vec<(u32, u32)> = Vec::with_capacity(triangles.len());
         for (index, triangle) in (0u32..).zip(triangles) {
-            for_each_tile(grid, triangle, |tile| touched.push((tile, index)));
+            for_each_tile(
+                grid,
+                &triangle.corners().positions,
+                &SampleExtent::PIXEL,
+                |tile| touched.push((tile, index)),
+            );
         }
         assert!(
             u32::try_from(triangles.len()).is_ok(),
@@ -66,33 +72,30 @@ impl Bins {
     }
 }
 
-fn for_each_tile(grid: &TileGrid, triangle: &Triangle, mut touch: impl FnMut(u32)) {
+/// Calls `touch` with the tiles that a triangle may touch, row by row.
+pub(crate) fn for_each_tile(
+    grid: &TileGrid,
+    positions: &[[i32; 2]; 3],
+    extent: &SampleExtent,
+    mut touch: impl FnMut(u32),
+) {
     let viewport = grid.viewport();
-    let target = Rect {
-        min: glam::UVec2::ZERO,
-        max: glam::UVec2::new(viewport.width, viewport.height),
-    };
-    let bounds = pixel_bounds(triangle, &target);
-    if bounds.size().min_element() == 0 {
+    let size = [viewport.width, viewport.height].map(|n| n.cast_signed());
+    let Some(setup) = Setup::new(positions, [0, 0], size, extent) else {
         return;
-    }
-    let first = bounds.min / grid.tile_size();
-    let last = (bounds.max - 1) / grid.tile_size();
-    let tiles = Rect {
-        min: first,
-        max: last + 1,
     };
-    let single = first == last;
-    let edges = EdgeSet::new(triangle);
-    for tile in tiles.pixels() {
-        let min = tile * grid.tile_size();
-        let rect = Rect {
-            min,
-            max: min + grid.tile_size(),
-        }
-        .intersection(&bounds);
-        if single || edges.may_touch(&rect) {
-            touch(tile.y * grid.columns() + tile.x);
+    let side = grid.tile_size().cast_signed();
+    let window = setup.window;
+    let [first, last] = [window.min, window.max.map(|k| k - 1)].map(|at| at.map(|k| k / side));
+    for row in first[1]..=last[1] {
+        for column in first[0]..=last[0] {
+            let low = [column * side, row * side];
+            let at = [0, 1].map(|axis| low[axis].max(window.min[axis]));
+            let end = [0, 1].map(|axis| (low[axis] + side).min(window.max[axis]));
+            let covered = [end[0] - at[0], end[1] - at[1]];
+            if first == last || setup.extent(at, covered) != Extent::Outside {
+                touch(row.cast_unsigned() * grid.columns() + column.cast_unsigned());
+            }
         }
     }
 }

@@ -35,21 +35,6 @@ impl Edge {
     pub(crate) fn at(&self, x: i64, y: i64) -> i64 {
         self.a * (x - self.origin[0]) + self.b * (y - self.origin[1])
     }
-
-    /// 0 if samples on the edge belong to this triangle, else −1: a sample is covered where E + bias ≥ 0.
-    pub(crate) fn bias(&self) -> i64 {
-        let owns = self.a > 0 || (self.a == 0 && self.b > 0);
-        i64::from(owns) - 1
-    }
-
-    /// Smallest and largest change of E over steps of 0..=`dx` right and 0..=`dy` down.
-    pub(crate) fn spread(&self, dx: i64, dy: i64) -> (i64, i64) {
-        let (along_x, along_y) = (self.a * dx, self.b * dy);
-        (
-            along_x.min(0) + along_y.min(0),
-            along_x.max(0) + along_y.max(0),
-        )
-    }
 }
 
 /// Twice the signed area of a triangle, rows downwards: negative for corners that run counter-clockwise as seen.

@@ -1,9 +1,10 @@
 //! What construction can refuse.
 
+use crate::frame::MAX_CHUNKS;
 use crate::tile::MAX_TILE_SIZE;
 use crate::viewport::MAX_DIMENSION;
 
-/// Why a target, a tile grid or a sample pattern could not be made.
+/// Why a target, a tile grid, a sample pattern or a frame could not be made.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum Error {
@@ -26,5 +27,15 @@ pub enum Error {
     TileSize {
         /// Side asked for, in pixels.
         size: u32,
+    },
+    /// A frame cannot number so much.
+    #[error(
+        "a frame of {vertices} vertices in {chunks} chunks: it holds 2^32 - 1 vertices in {MAX_CHUNKS} chunks at most"
+    )]
+    FrameSize {
+        /// Vertices asked for.
+        vertices: usize,
+        /// Chunks asked for.
+        chunks: usize,
     },
 }

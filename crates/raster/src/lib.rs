@@ -70,24 +70,35 @@
 
 mod assemble;
 mod bins;
+mod buffer;
+mod chunk;
 mod clip;
-mod coverage;
 mod depth;
 mod edge;
 mod error;
+mod frame;
+mod layer;
+mod planes;
 mod samples;
+mod scan;
+mod setup;
 mod stroke;
 mod tile;
 mod triangle;
+mod vertex;
 mod viewport;
 mod visibility;
 
 pub use assemble::{Assembly, Cull, assemble_triangle};
 pub use bins::Bins;
+pub use chunk::{CHUNK_TRIANGLES, Chunk, MeshPart};
 pub use error::Error;
+pub use frame::{Assembler, Frame, MAX_CHUNKS, Surface};
+pub use planes::Planes;
 pub use samples::{MAX_SAMPLES, SamplePattern};
 pub use stroke::{assemble_line, assemble_point};
 pub use tile::{MAX_TILE_SIZE, Rect, TILE_SIZE, TileGrid};
-pub use triangle::{Facing, Planes, Triangle};
+pub use triangle::{Facing, Triangle};
+pub use vertex::{ScreenVertex, project};
 pub use viewport::{MAX_DIMENSION, SUBPIXELS, Viewport};
-pub use visibility::VisibilityTile;
+pub use visibility::{OwnerRows, Owners, VisibilityTile};

@@ -27,6 +27,21 @@ pub struct SamplePattern {
     positions: Vec<IVec2>,
 }
 
+/// Smallest and largest coordinates of a pattern's samples, in 1/256 pixel.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct SampleExtent {
+    pub(crate) min: [i32; 2],
+    pub(crate) max: [i32; 2],
+}
+
+impl SampleExtent {
+    /// Samples anywhere in the pixel.
+    pub(crate) const PIXEL: Self = Self {
+        min: [0, 0],
+        max: [SUBPIXELS - 1, SUBPIXELS - 1],
+    };
+}
+
 /// Standard locations, in sixteenths of a pixel.
 const STANDARD_1: [[i32; 2]; 1] = [[8, 8]];
 const STANDARD_2: [[i32; 2]; 2] = [[12, 12], [4, 4]];
@@ -97,6 +112,14 @@ impl SamplePattern {
     #[must_use]
     pub fn full_mask(&self) -> u64 {
         u64::MAX >> (u64::BITS as usize - self.count())
+    }
+
+    pub(crate) fn extent(&self) -> SampleExtent {
+        let all = || self.positions.iter().copied();
+        SampleExtent {
+            min: all().fold(IVec2::MAX, IVec2::min).to_array(),
+            max: all().fold(IVec2::MIN, IVec2::max).to_array(),
+        }
     }
 
     fn sequence(count: u32) -> Self {

@@ -3,10 +3,11 @@
 use glam::{DVec3, IVec2, UVec2};
 use texcoord::{Weights, perspective_weights};
 
-use crate::SamplePattern;
 use crate::depth::DepthPlane;
 use crate::edge::{Edge, doubled_area};
+use crate::setup::Corners;
 use crate::viewport::SUBPIXELS;
+use crate::{Planes, SamplePattern, Surface};
 
 /// Which side of a surface is seen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -43,18 +44,6 @@ pub struct Triangle {
     inv_w: DVec3,
     /// Corners in the source primitive, unless they are its own.
     piece: Option<Box<[DVec3; 3]>>,
-}
-
-/// What interpolation over a triangle needs, as plain numbers: for callers that work on many points at once.
-#[derive(Clone, Copy, Debug)]
-pub struct Planes {
-    /// For each corner (a, b, c) of the edge function opposite to it, E = a·x + b·y + c at x, y in 1/256 pixel from
-    /// the target's top left corner; ≥ 0 inside. Whole numbers; E and its terms are exact in f64 over the target.
-    pub edges: [[f64; 3]; 3],
-    /// 1/w of each corner.
-    pub inv_w: [f64; 3],
-    /// Barycentric coordinates of the corners in the source primitive; `None` where they are its own.
-    pub piece: Option<[DVec3; 3]>,
 }
 
 impl Triangle {
@@ -125,14 +114,8 @@ impl Triangle {
     /// Its edge functions and 1/w, for [`texcoord::packet::perspective_weights`] and the like.
     #[must_use]
     pub fn planes(&self) -> Planes {
-        Planes {
-            edges: self.edges().map(|edge| {
-                let constant = edge.at(0, 0);
-                [edge.a as f64, edge.b as f64, constant as f64]
-            }),
-            inv_w: self.inv_w.to_array(),
-            piece: self.piece.as_deref().copied(),
-        }
+        let positions = self.positions.map(|p| p.to_array());
+        Planes::new(positions, self.inv_w.to_array(), self.piece.as_deref())
     }
 
     /// Depth at a point, z/w in 0..=1 (1 near, 0 far), held within the range of the corners.
@@ -153,14 +136,28 @@ impl Triangle {
         [0, 1, 2].map(|i| Edge::new(p[(i + 1) % 3], p[(i + 2) % 3], turn))
     }
 
-    pub(crate) fn depth_plane(&self) -> DepthPlane {
-        DepthPlane::new(self.depth, doubled_area(self.positions).abs() as f64)
+    /// As a tile takes it.
+    pub(crate) fn corners(&self) -> Corners {
+        Corners {
+            positions: self.positions.map(|p| p.to_array()),
+            depth: self.depth.to_array(),
+        }
     }
 
-    /// Smallest and largest coordinates, in sub-pixel units.
-    pub(crate) fn bounds(&self) -> (IVec2, IVec2) {
-        let [a, b, c] = self.positions;
-        (a.min(b).min(c), a.max(b).max(c))
+    /// As those see it that shade it, with its corners in a frame.
+    pub(crate) fn surface(&self, vertices: [u32; 3]) -> Surface<'_> {
+        Surface {
+            source: self.source,
+            vertices,
+            positions: self.positions.map(|p| p.to_array()),
+            inv_w: self.inv_w.to_array(),
+            piece: self.piece.as_deref(),
+        }
+    }
+
+    fn depth_plane(&self) -> DepthPlane {
+        let area = doubled_area(self.positions).abs() as f64;
+        DepthPlane::new(self.depth.to_array(), area)
     }
 
     fn edge_values(&self, edges: &[Edge; 3], pixel: UVec2, point: IVec2) -> [i64; 3] {

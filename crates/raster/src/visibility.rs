@@ -1,22 +1,26 @@
 //! The visibility buffer of a tile: who owns each sample, before anybody asks for a colour.
 
+use fearless_simd::{Level, Simd, dispatch, prelude::*};
 use glam::UVec2;
+use texcoord::packet::LANES;
 
-use crate::coverage::{BLOCK, CoveredPixel, Offsets, Scan, pixel_bounds};
+use crate::buffer::{NOBODY, SampleBuffer};
 use crate::depth::DepthPlane;
-use crate::samples::MAX_SAMPLES;
+use crate::layer::Layer;
+use crate::samples::{MAX_SAMPLES, SampleExtent};
+use crate::scan::{Scan, ScanBlock, draw_small, index, signed};
+use crate::setup::{Corners, Extent, Setup};
 use crate::tile::Rect;
+use crate::viewport::SUBPIXELS;
 use crate::{SamplePattern, Triangle};
-
-/// Stored where nothing was drawn: behind every depth, so that a surface at depth 0 shows.
-const CLEAR_DEPTH: f32 = -1.0;
-/// Owner of a sample where nothing was drawn.
-const NOBODY: u32 = u32::MAX;
 
 /// Owner and depth of every sample of a rectangle of pixels, used again from tile to tile.
 ///
 /// The greater depth wins (depth is reversed); at equal depth the first drawn keeps the sample. So the result
 /// depends on the order of submission only where depths are equal to the bit.
+///
+/// A surface that covers the whole tile in front of everything is kept as one value and written down only when
+/// another meets it: dozens of layers over the screen cost next to nothing.
 ///
 /// # Examples
 /// ```
@@ -34,40 +38,72 @@ const NOBODY: u32 = u32::MAX;
 /// ```
 #[derive(Clone, Debug)]
 pub struct VisibilityTile {
+    level: Level,
     pattern: SamplePattern,
+    extent: SampleExtent,
     rect: Rect,
-    depths: Vec<f32>,
-    owners: Vec<u32>,
-    blocks: Vec<Block>,
-    /// Memory of the last triangle's scan.
-    offsets: Offsets,
+    /// Stands for the whole tile while it is there; then the buffer holds nothing.
+    layer: Option<Layer>,
+    /// No sample is stored with a greater depth.
+    nearest: f32,
+    buffer: SampleBuffer,
 }
 
-/// What is known of 8×8 pixels without reading them.
+/// Who owns the samples of a tile, for readers that take many at once.
 #[derive(Clone, Copy, Debug)]
-struct Block {
-    /// No sample is stored with a smaller depth. Depths only grow, so an old bound stays true.
-    farthest: f32,
-    /// Samples written since the bound was taken.
-    written: usize,
+pub enum Owners<'a> {
+    /// One surface owns them all, or none does.
+    Single(Option<u32>),
+    /// They differ, or may.
+    Each(OwnerRows<'a>),
 }
 
-const FRESH: Block = Block {
-    farthest: CLEAR_DEPTH,
-    written: 0,
-};
+/// Owners of a tile's samples, row by row.
+#[derive(Clone, Copy, Debug)]
+pub struct OwnerRows<'a> {
+    buffer: &'a SampleBuffer,
+}
+
+impl<'a> OwnerRows<'a> {
+    /// Owner of a sample that nothing was drawn to.
+    pub const NOBODY: u32 = NOBODY;
+
+    /// Owners in the row `y` of the tile, counted from its top, for each pixel the sample `sample`;
+    /// [`NOBODY`](Self::NOBODY) is the background. Filled up to a multiple of 16 with what must be skipped.
+    ///
+    /// # Panics
+    /// If the tile has no such row or sample.
+    #[inline]
+    #[must_use]
+    pub fn row(&self, y: usize, sample: usize) -> &'a [u32] {
+        self.buffer.owner_row(y, sample)
+    }
+}
+
+/// Covered samples of 16 pixels of a row and their depths, sample by sample.
+struct PacketRow {
+    masks: [u64; MAX_SAMPLES],
+    depths: [[f32; LANES]; MAX_SAMPLES],
+}
 
 impl VisibilityTile {
     /// An empty tile without pixels; [`reset`](Self::reset) gives it some.
     #[must_use]
     pub fn new(pattern: &SamplePattern) -> Self {
+        Self::with_level(pattern, Level::new())
+    }
+
+    /// [`new`](Self::new) with an instruction set of the caller's choice. The result is the same on all.
+    #[must_use]
+    pub fn with_level(pattern: &SamplePattern, level: Level) -> Self {
         Self {
+            level,
             pattern: pattern.clone(),
+            extent: pattern.extent(),
             rect: Rect::default(),
-            depths: Vec::new(),
-            owners: Vec::new(),
-            blocks: Vec::new(),
-            offsets: Offsets::new(),
+            layer: Some(Layer::BACKGROUND),
+            nearest: Layer::BACKGROUND.nearest,
+            buffer: SampleBuffer::default(),
         }
     }
 
@@ -75,14 +111,10 @@ impl VisibilityTile {
     pub fn reset(&mut self, rect: Rect) {
         self.rect = rect;
         let size = rect.size();
-        let samples = size.x as usize * size.y as usize * self.pattern.count();
-        let blocks = size.x.div_ceil(BLOCK) as usize * size.y.div_ceil(BLOCK) as usize;
-        self.depths.clear();
-        self.depths.resize(samples, CLEAR_DEPTH);
-        self.owners.clear();
-        self.owners.resize(samples, NOBODY);
-        self.blocks.clear();
-        self.blocks.resize(blocks, FRESH);
+        let planes = self.pattern.count();
+        self.buffer.resize(size.x as usize, size.y as usize, planes);
+        self.layer = Some(Layer::BACKGROUND);
+        self.nearest = Layer::BACKGROUND.nearest;
     }
 
     /// The pixels that the tile stands for.
@@ -99,7 +131,20 @@ impl VisibilityTile {
 
     /// Draws an opaque surface; `index` names it in what the tile returns and is not `u32::MAX`.
     pub fn draw(&mut self, index: u32, triangle: &Triangle) {
-        self.draw_tested(index, triangle, |_, mask| mask);
+        let corners = triangle.corners();
+        dispatch!(self.level, simd => self.draw_corners(simd, index, &corners));
+    }
+
+    /// Draws surfaces in order, each with its index.
+    pub(crate) fn draw_all(&mut self, surfaces: impl Iterator<Item = (u32, Corners)>) {
+        dispatch!(self.level, simd => self.draw_each(simd, surfaces));
+    }
+
+    #[inline(always)]
+    fn draw_each<S: Simd>(&mut self, simd: S, surfaces: impl Iterator<Item = (u32, Corners)>) {
+        for (owner, corners) in surfaces {
+            self.draw_corners(simd, owner, &corners);
+        }
     }
 
     /// Draws a surface with holes: `test` gets a pixel and the samples that are covered and in front, and
@@ -108,47 +153,30 @@ impl VisibilityTile {
         &mut self,
         index: u32,
         triangle: &Triangle,
-        mut test: impl FnMut(UVec2, u64) -> u64,
+        test: impl FnMut(UVec2, u64) -> u64,
     ) {
         debug_assert!(index != NOBODY, "u32::MAX stands for the background");
-        let memory = core::mem::take(&mut self.offsets);
-        let scan = Scan::new(triangle, &self.pattern, memory);
-        let plane = triangle.depth_plane();
-        let mut depths = [0.0; MAX_SAMPLES];
-        for (block, area) in blocks_of(triangle, self.rect) {
-            if self.hides(block, plane.nearest()) {
-                continue;
-            }
-            scan.for_each_pixel(&area, |at| {
-                let place = self.place(at.pixel);
-                let visible = self.in_front(place, &scan, &plane, &at, &mut depths);
-                if visible != 0 {
-                    let kept = visible & test(at.pixel, visible);
-                    self.write(index, place, kept, &depths);
-                    self.blocks[block].written += kept.count_ones() as usize;
-                }
-            });
-        }
-        self.offsets = scan.into_memory();
+        let corners = triangle.corners();
+        dispatch!(self.level, simd => self.draw_sieved(simd, index, &corners, test));
     }
 
     /// Calls `found` with each pixel and the samples of it that a surface covers in front of what was drawn
     /// (greater depth, not equal). Writes nothing: for surfaces that blend.
-    pub fn visit(&self, triangle: &Triangle, mut found: impl FnMut(UVec2, u64)) {
-        let scan = Scan::new(triangle, &self.pattern, Offsets::new());
-        let plane = triangle.depth_plane();
-        let mut depths = [0.0; MAX_SAMPLES];
-        for (block, area) in blocks_of(triangle, self.rect) {
-            if self.blocks[block].farthest >= plane.nearest() {
-                continue;
-            }
-            scan.for_each_pixel(&area, |at| {
-                let place = self.place(at.pixel);
-                let visible = self.in_front(place, &scan, &plane, &at, &mut depths);
-                if visible != 0 {
-                    found(at.pixel, visible);
-                }
-            });
+    pub fn visit(&mut self, triangle: &Triangle, mut found: impl FnMut(UVec2, u64)) {
+        self.draw_tested(0, triangle, |pixel, mask| {
+            found(pixel, mask);
+            0
+        });
+    }
+
+    /// Who owns the samples, for readers that take many at once.
+    #[must_use]
+    pub fn owners(&self) -> Owners<'_> {
+        match &self.layer {
+            Some(layer) => Owners::Single(Some(layer.owner).filter(|&owner| owner != NOBODY)),
+            None => Owners::Each(OwnerRows {
+                buffer: &self.buffer,
+            }),
         }
     }
 
@@ -158,14 +186,21 @@ impl VisibilityTile {
     /// # Panics
     /// If the pixel is not in the tile.
     pub fn surfaces(&self, pixel: UVec2, mut found: impl FnMut(u32, u64)) {
-        let owners = &self.owners[self.place(pixel)..][..self.pattern.count()];
+        let [x, y] = self.place(pixel);
+        if let Some(layer) = &self.layer {
+            if layer.owner != NOBODY {
+                found(layer.owner, self.pattern.full_mask());
+            }
+            return;
+        }
+        let count = self.pattern.count();
+        let owner = |sample: usize| self.buffer.owner(self.buffer.place(x, y, sample));
         let mut left = self.covered(pixel);
         while left != 0 {
-            let index = owners[left.trailing_zeros() as usize];
-            let mut mask = 0;
-            for (sample, &owner) in owners.iter().enumerate() {
-                mask |= u64::from(owner == index) << sample;
-            }
+            let index = owner(left.trailing_zeros() as usize);
+            let mask = (0..count).fold(0, |mask, sample| {
+                mask | u64::from(owner(sample) == index) << sample
+            });
             left &= !mask;
             found(index, mask);
         }
@@ -177,10 +212,8 @@ impl VisibilityTile {
     /// If the pixel is not in the tile.
     #[must_use]
     pub fn covered(&self, pixel: UVec2) -> u64 {
-        let owners = &self.owners[self.place(pixel)..][..self.pattern.count()];
-        let samples = owners.iter().enumerate();
-        samples.fold(0, |mask, (i, &owner)| {
-            mask | u64::from(owner != NOBODY) << i
+        (0..self.pattern.count()).fold(0, |mask, sample| {
+            mask | u64::from(self.owner(pixel, sample).is_some()) << sample
         })
     }
 
@@ -190,8 +223,13 @@ impl VisibilityTile {
     /// If the pixel is not in the tile or has no such sample.
     #[must_use]
     pub fn owner(&self, pixel: UVec2, sample: usize) -> Option<u32> {
-        let owners = &self.owners[self.place(pixel)..][..self.pattern.count()];
-        Some(owners[sample]).filter(|&owner| owner != NOBODY)
+        let [x, y] = self.place(pixel);
+        assert!(sample < self.pattern.count(), "no sample {sample}");
+        let owner = match &self.layer {
+            Some(layer) => layer.owner,
+            None => self.buffer.owner(self.buffer.place(x, y, sample)),
+        };
+        Some(owner).filter(|&owner| owner != NOBODY)
     }
 
     /// Depth at a sample in 0..=1, 0 where nothing was drawn.
@@ -200,100 +238,239 @@ impl VisibilityTile {
     /// If the pixel is not in the tile or has no such sample.
     #[must_use]
     pub fn depth(&self, pixel: UVec2, sample: usize) -> f32 {
-        let depths = &self.depths[self.place(pixel)..][..self.pattern.count()];
-        depths[sample].max(0.0)
+        let at = self.place(pixel);
+        let position = self.pattern.positions()[sample];
+        let depth = match &self.layer {
+            Some(layer) => layer.depth_at(at, position),
+            None => self.buffer.depth(self.buffer.place(at[0], at[1], sample)),
+        };
+        depth.max(0.0)
     }
 
-    /// Index of a pixel's first sample.
-    fn place(&self, pixel: UVec2) -> usize {
+    /// A pixel counted from the tile's top left.
+    fn place(&self, pixel: UVec2) -> [usize; 2] {
         assert!(
             self.rect.contains(pixel),
             "pixel {pixel} is not in the tile {:?}",
             self.rect
         );
-        let at = pixel - self.rect.min;
-        (at.y as usize * self.rect.size().x as usize + at.x as usize) * self.pattern.count()
+        (pixel - self.rect.min).to_array().map(|k| k as usize)
     }
 
-    /// Covered samples in front of the stored depth; their depths go to `depths`.
-    fn in_front(
-        &self,
-        place: usize,
-        scan: &Scan,
-        plane: &DepthPlane,
-        at: &CoveredPixel,
-        depths: &mut [f32; MAX_SAMPLES],
-    ) -> u64 {
-        let stored = &self.depths[place..][..self.pattern.count()];
-        let (mut left, mut visible) = (at.mask, 0);
-        while left != 0 {
-            let sample = left.trailing_zeros() as usize;
-            left &= left - 1;
-            let (edge_1, edge_2) = scan.depth_edges(at, sample);
-            depths[sample] = plane.at(edge_1, edge_2);
-            visible |= u64::from(depths[sample] > stored[sample]) << sample;
+    /// The triangle from the tile's point of view; `None` if it covers no sample of it or nothing would show.
+    #[inline(always)]
+    fn setup(&self, corners: &Corners) -> Option<(Setup, DepthPlane)> {
+        let origin = self.rect.min.to_array();
+        let origin = origin.map(|k| signed(k as usize) * SUBPIXELS);
+        let setup = Setup::new(&corners.positions, origin, self.size(), &self.extent)?;
+        let plane = setup.plane(corners.depth);
+        let hidden = match &self.layer {
+            Some(layer) => plane.nearest() <= layer.farthest,
+            None => false,
+        };
+        (!hidden).then_some((setup, plane))
+    }
+
+    #[inline(always)]
+    fn size(&self) -> [i32; 2] {
+        let size = self.rect.size().to_array();
+        size.map(|n| signed(n as usize))
+    }
+
+    #[inline(always)]
+    fn draw_corners<S: Simd>(&mut self, simd: S, owner: u32, corners: &Corners) {
+        debug_assert!(owner != NOBODY, "u32::MAX stands for the background");
+        let Some((setup, plane)) = self.setup(corners) else {
+            return;
+        };
+        let window = &setup.window;
+        if window.min == [0, 0] && window.max == self.size() {
+            match setup.extent([0, 0], self.size()) {
+                Extent::Outside => return,
+                Extent::Inside => {
+                    if self.cover(owner, setup, plane) {
+                        return;
+                    }
+                }
+                Extent::Partial(_) => {}
+            }
         }
-        visible
-    }
-
-    fn write(&mut self, index: u32, place: usize, mask: u64, depths: &[f32; MAX_SAMPLES]) {
-        let mut left = mask;
-        while left != 0 {
-            let sample = left.trailing_zeros() as usize;
-            left &= left - 1;
-            self.depths[place + sample] = depths[sample];
-            self.owners[place + sample] = index;
+        self.write_layer(simd);
+        self.nearest = self.nearest.max(plane.nearest());
+        let positions = self.pattern.positions();
+        if setup.is_small {
+            draw_small(simd, &setup, &plane, positions, owner, &mut self.buffer);
+        } else {
+            self.draw_blocks(simd, owner, &setup, &plane);
         }
     }
 
-    /// Whether a surface no nearer than `nearest` is hidden in all of a block.
-    fn hides(&mut self, block: usize, nearest: f32) -> bool {
-        let side = BLOCK as usize;
-        // A new bound costs a read of the block: worth it after as many writes.
-        if self.blocks[block].written >= side * side * self.pattern.count() {
-            self.blocks[block] = Block {
-                farthest: self.farthest(block),
-                written: 0,
+    /// Takes a surface that covers the tile as one value if it lies in front of all that is there; whether nothing is
+    /// left to do.
+    #[inline(never)]
+    fn cover(&mut self, owner: u32, setup: Setup, plane: DepthPlane) -> bool {
+        let layer = Layer::new(owner, setup, plane, self.size());
+        if layer.farthest > self.nearest {
+            self.nearest = layer.nearest;
+            self.layer = Some(layer);
+            return true;
+        }
+        let hidden = |below: &Layer| layer.nearest <= below.farthest;
+        self.layer.as_ref().is_some_and(hidden)
+    }
+
+    /// Writes the surface that stands for the whole tile down, if one does.
+    #[inline(always)]
+    fn write_layer<S: Simd>(&mut self, simd: S) {
+        if let Some(layer) = self.layer.take() {
+            let (positions, buffer) = (self.pattern.positions(), &mut self.buffer);
+            simd.vectorize(
+                #[inline(always)]
+                || layer.write(simd, positions, buffer),
+            );
+        }
+    }
+
+    #[inline(always)]
+    fn draw_blocks<S: Simd>(&mut self, simd: S, owner: u32, setup: &Setup, plane: &DepthPlane) {
+        let nearest = plane.nearest();
+        let scan = Scan::new(simd, setup, plane);
+        let positions = self.pattern.positions();
+        for place in setup.window.blocks() {
+            let buffer = &mut self.buffer;
+            let number = buffer.block(index(place[0]), index(place[1]));
+            if buffer.refreshed_farthest(number) >= nearest {
+                continue;
+            }
+            if let Some(block) = scan.block(place) {
+                let packets = draw_block(simd, &scan, &block, positions, owner, buffer);
+                buffer.touch(number, packets * LANES);
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn draw_sieved<S: Simd>(
+        &mut self,
+        simd: S,
+        owner: u32,
+        corners: &Corners,
+        mut test: impl FnMut(UVec2, u64) -> u64,
+    ) {
+        let Some((setup, plane)) = self.setup(corners) else {
+            return;
+        };
+        self.write_layer(simd);
+        let nearest = plane.nearest();
+        let scan = Scan::new(simd, &setup, &plane);
+        let (positions, rect) = (self.pattern.positions(), self.rect);
+        let (buffer, highest) = (&mut self.buffer, &mut self.nearest);
+        let mut packet = PacketRow {
+            masks: [0; MAX_SAMPLES],
+            depths: [[0.0; LANES]; MAX_SAMPLES],
+        };
+        for place in setup.window.blocks() {
+            let number = buffer.block(index(place[0]), index(place[1]));
+            if buffer.refreshed_farthest(number) >= nearest {
+                continue;
+            }
+            let Some(block) = scan.block(place) else {
+                continue;
             };
+            for y in block.rows[0]..block.rows[1] {
+                let union = packet.fill(simd, &scan, &block, y, positions, buffer);
+                let width = rect.size().x as usize - index(block.at[0]);
+                let mut left = union & (u64::MAX >> (64 - width.min(LANES)));
+                while left != 0 {
+                    let lane = left.trailing_zeros() as usize;
+                    left &= left - 1;
+                    let (x, mask) = (
+                        index(block.at[0]) + lane,
+                        packet.samples(lane, positions.len()),
+                    );
+                    let pixel = rect.min + UVec2::new(count32(x), count32(index(y)));
+                    let mut kept = mask & test(pixel, mask);
+                    buffer.touch(number, kept.count_ones() as usize);
+                    if kept != 0 {
+                        *highest = highest.max(nearest);
+                    }
+                    while kept != 0 {
+                        let sample = kept.trailing_zeros() as usize;
+                        kept &= kept - 1;
+                        let at = buffer.place(x, index(y), sample);
+                        buffer.set(at, owner, packet.depths[sample][lane]);
+                    }
+                }
+            }
         }
-        self.blocks[block].farthest >= nearest
-    }
-
-    /// Smallest depth stored in a block.
-    fn farthest(&self, block: usize) -> f32 {
-        let side = BLOCK as usize;
-        let [width, height] = self.rect.size().to_array().map(|n| n as usize);
-        let columns = width.div_ceil(side);
-        let (left, top) = (block % columns * side, block / columns * side);
-        let (right, bottom) = ((left + side).min(width), (top + side).min(height));
-        let count = self.pattern.count();
-        (top..bottom)
-            .flat_map(|y| &self.depths[(y * width + left) * count..(y * width + right) * count])
-            .fold(f32::MAX, |least, &depth| least.min(depth))
     }
 }
 
-/// The blocks of a tile that a triangle's bounding box touches, with the pixels of both.
-fn blocks_of(triangle: &Triangle, tile: Rect) -> impl Iterator<Item = (usize, Rect)> {
-    let bounds = pixel_bounds(triangle, &tile);
-    let columns = tile.size().x.div_ceil(BLOCK) as usize;
-    let some = bounds.size().min_element() > 0;
-    let blocks = if some {
-        let within = |p: UVec2| (p - tile.min) / BLOCK;
-        Rect {
-            min: within(bounds.min),
-            max: within(bounds.max - 1) + 1,
+impl PacketRow {
+    /// Takes the samples of a row that show; the lanes of which one does.
+    #[inline(always)]
+    fn fill<S: Simd>(
+        &mut self,
+        simd: S,
+        scan: &Scan<'_, S>,
+        block: &ScanBlock,
+        y: i32,
+        positions: &[glam::IVec2],
+        buffer: &SampleBuffer,
+    ) -> u64 {
+        let mut union = 0;
+        for (sample, &position) in positions.iter().enumerate() {
+            let edges = scan.sample_edges(block, position);
+            let row = y - block.rows[0];
+            let depth = scan.depth(&edges, row);
+            let place = buffer.place(index(block.at[0]), index(y), sample);
+            let visible = scan.covered(block, &edges, row) & buffer.behind(simd, place, depth);
+            depth.store_slice(&mut self.depths[sample]);
+            self.masks[sample] = visible.to_bitmask();
+            union |= self.masks[sample];
         }
-    } else {
-        Rect::default()
-    };
-    blocks.pixels().map(move |block| {
-        let min = tile.min + block * BLOCK;
-        let area = Rect {
-            min,
-            max: min + BLOCK,
+        union
+    }
+
+    /// The samples of a lane that show.
+    fn samples(&self, lane: usize, count: usize) -> u64 {
+        let masks = self.masks[..count].iter().enumerate();
+        masks.fold(0, |all, (sample, mask)| all | (mask >> lane & 1) << sample)
+    }
+}
+
+/// Draws the rows of a block, sample by sample; how many packets were written to.
+#[inline(always)]
+fn draw_block<S: Simd>(
+    simd: S,
+    scan: &Scan<'_, S>,
+    block: &ScanBlock,
+    positions: &[glam::IVec2],
+    owner: u32,
+    buffer: &mut SampleBuffer,
+) -> usize {
+    let mut packets = 0;
+    for (sample, &position) in positions.iter().enumerate() {
+        let edges = scan.sample_edges(block, position);
+        for row in 0..block.rows[1] - block.rows[0] {
+            let covered = scan.covered(block, &edges, row);
+            if !covered.any_true() {
+                continue;
+            }
+            let depth = scan.depth(&edges, row);
+            let y = index(block.rows[0] + row);
+            let place = buffer.place(index(block.at[0]), y, sample);
+            let visible = covered & buffer.behind(simd, place, depth);
+            if visible.any_true() {
+                buffer.write(simd, place, visible, owner, depth);
+                packets += 1;
+            }
         }
-        .intersection(&bounds);
-        (block.y as usize * columns + block.x as usize, area)
-    })
+    }
+    packets
+}
+
+/// A column or row of a tile.
+fn count32(place: usize) -> u32 {
+    u32::try_from(place).expect("tiles have at most 32,768 pixels a side")
 }

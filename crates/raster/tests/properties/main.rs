@@ -8,6 +8,7 @@
 mod bins;
 mod clip;
 mod coverage;
+mod frame;
 mod interpolation;
 mod oracle;
 mod samples;

@@ -47,9 +47,9 @@ fn check(lanes: &[Lane; LANES]) {
     let (weights, slopes) = first;
     for (lane, &[edges, dx, dy, inv_w]) in lanes.iter().enumerate() {
         let truth = texcoord::perspective_weights(edges, dx, dy, inv_w);
-        for i in 0..3 {
+        for (i, found) in weights.iter().enumerate() {
             assert_eq!(
-                weights[i][lane].to_bits(),
+                found[lane].to_bits(),
                 truth.value[i].to_bits(),
                 "weight {i} of lane {lane}: {edges} {inv_w}"
             );

@@ -1,0 +1,140 @@
+//! Vertices on the screen, each projected once, 16 at a time.
+
+use fearless_simd::{Simd, f64x8, mask64x8, prelude::*};
+use texcoord::packet::{F64x16, LANES};
+
+use crate::Viewport;
+use crate::viewport::{GUARD_PIXELS, SUBPIXELS};
+
+/// A vertex after projection and snapping, and what of the view volume it lies beyond.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct ScreenVertex {
+    /// Sub-pixel units from the target's top left corner, y down.
+    pub(crate) position: [i32; 2],
+    /// A bit for each plane of the view volume that it is beyond, and those below.
+    pub(crate) flags: u32,
+    /// z/w.
+    pub(crate) depth: f64,
+    /// 1/w.
+    pub(crate) inv_w: f64,
+}
+
+/// Bits of the six planes of the view volume.
+pub(crate) const BEYOND: u32 = 0b11_1111;
+/// Its triangles have to be clipped: it has no place on the screen, or one beyond the guard band.
+pub(crate) const CLIPPED: u32 = 1 << 6;
+
+/// Adding it leaves the nearest integer, ties to even, in the low bits of the sum: 1.5·2⁵².
+const INTEGER: f64 = 6_755_399_441_055_744.0;
+
+/// Projects up to 16 vertices to the screen: the packet twin of what [`assemble_triangle`](crate::assemble_triangle)
+/// does to a corner, the same to the bit.
+///
+/// `clip`: (x, y, z, w) in clip space, a lane each; lanes beyond the length of `out` are not used. Any value is
+/// allowed, NaN included.
+///
+/// # Panics
+/// If `out` is longer than 16.
+#[inline(always)]
+pub fn project<S: Simd>(
+    simd: S,
+    viewport: &Viewport,
+    clip: &[F64x16<S>; 4],
+    out: &mut [ScreenVertex],
+) {
+    assert!(out.len() <= LANES, "a packet has 16 vertices");
+    let [x, y, z, w] = *clip;
+    let splat = |value: f64| F64x16::splat(simd, value);
+    let half = splat(0.5);
+    let inv_w = splat(1.0) / w;
+    let depth = z / w;
+    let column = (x / w * half + half) * splat(f64::from(viewport.width));
+    let row = (half - y / w * half) * splat(f64::from(viewport.height));
+    let columns = snapped(simd, column).to_array();
+    let rows = snapped(simd, row).to_array();
+    let (depths, inv_ws) = (depth.to_array(), inv_w.to_array());
+
+    let flags = flags(simd, viewport, clip, [column, row, depth, inv_w]);
+    for (lane, vertex) in out.iter_mut().enumerate() {
+        *vertex = ScreenVertex {
+            position: [low_bits(columns[lane]), low_bits(rows[lane])],
+            flags: flags[lane],
+            depth: depths[lane],
+            inv_w: inv_ws[lane],
+        };
+    }
+}
+
+/// Grid units of pixels, as the low bits of an f64.
+#[inline(always)]
+fn snapped<S: Simd>(simd: S, pixels: F64x16<S>) -> F64x16<S> {
+    let reach = GUARD_PIXELS * f64::from(SUBPIXELS);
+    let (low, high) = (f64x8::splat(simd, -reach), f64x8::splat(simd, reach));
+    F64x16(pixels.0.map(|half| {
+        let units = half * f64::from(SUBPIXELS);
+        let units = units.simd_lt(low).select(low, units);
+        units.simd_gt(high).select(high, units) + INTEGER
+    }))
+}
+
+#[allow(
+    clippy::cast_possible_truncation,
+    reason = "the low half of the bits is the integer"
+)]
+#[inline(always)]
+fn low_bits(sum: f64) -> i32 {
+    (sum.to_bits() as u32).cast_signed()
+}
+
+/// Flags of 16 vertices; most packets have none.
+#[inline(always)]
+fn flags<S: Simd>(
+    simd: S,
+    viewport: &Viewport,
+    clip: &[F64x16<S>; 4],
+    [column, row, depth, inv_w]: [F64x16<S>; 4],
+) -> [u32; LANES] {
+    let [x, y, z, w] = *clip;
+    let zero = F64x16::splat(simd, 0.0);
+    let guard = viewport.guard_ndc();
+    let [across, along] = [guard.x, guard.y].map(|g| F64x16::splat(simd, g) * w);
+    let beyond = [w - z, z, w - x, w + x, w - y, w + y];
+    let past_guard = [w - z, z, across - x, across + x, along - y, along + y];
+    let finite = |v: F64x16<S>| bits(v.0.map(|half| half.is_finite()));
+    let usable = finite(column)
+        & finite(row)
+        & finite(depth)
+        & finite(inv_w)
+        & finite(x)
+        & finite(y)
+        & finite(z)
+        & finite(w)
+        & below(zero, w)
+        & below(zero, inv_w);
+    let clipped = past_guard
+        .iter()
+        .fold(!usable & 0xffff, |all, &d| all | below(d, zero));
+    let planes = beyond.map(|d| below(d, zero));
+    let any = planes.iter().fold(clipped, |all, &plane| all | plane);
+    if any == 0 {
+        return [0; LANES];
+    }
+    core::array::from_fn(|lane| {
+        let bit = |mask: u64| u32::from(mask >> lane & 1 == 1);
+        let beyond = planes.iter().enumerate();
+        beyond.fold(bit(clipped) * CLIPPED, |all, (k, &plane)| {
+            all | bit(plane) << k
+        })
+    })
+}
+
+/// Lanes where a < b.
+#[inline(always)]
+fn below<S: Simd>(a: F64x16<S>, b: F64x16<S>) -> u64 {
+    bits([a.0[0].simd_lt(b.0[0]), a.0[1].simd_lt(b.0[1])])
+}
+
+#[inline(always)]
+fn bits<S: Simd>(mask: [mask64x8<S>; 2]) -> u64 {
+    mask[0].to_bitmask() | mask[1].to_bitmask() << 8
+}
