@@ -77,6 +77,7 @@ pub(super) fn filtered<S: Simd, A: Sums<S>, F: Finish<S>>(
         placed[1] = texture.placed(simd, (plan.fine + 1.0).min(last));
     }
     let mut sums = A::zero(simd);
+    let mut all_weights = u32x16::splat(simd, 0);
     // A line's probes stand on either side of the middle: pair 0 before and after it, pair 1, and so on.
     let probes = plan.line.map_or(1, |line| 2 * line.pairs);
     for probe in 0..probes {
@@ -88,15 +89,14 @@ pub(super) fn filtered<S: Simd, A: Sums<S>, F: Finish<S>>(
         let units = weight * ONE as f32;
         let all = u32x16::truncate_from(units + 0.5);
         let coarse = u32x16::truncate_from(units * plan.fraction + 0.5);
+        all_weights += all;
         lookup.level(&mut sums, &placed[0], place, all - coarse);
         if levels == 2 {
             lookup.level(&mut sums, &placed[1], place, coarse);
         }
     }
-    let total = match plan.line {
-        None => None,
-        Some(line) => Some(line.total),
-    };
+    let weights = f32x16::float_from(all_weights) * (1.0 / ONE as f32);
+    let total = plan.line.is_some().then_some(weights);
     F::finish(simd, sums, total)
 }
 
@@ -157,17 +157,22 @@ impl<S: Simd, T> Lookup<'_, S, T> {
     #[inline(always)]
     fn texel(&self, place: f32x16<S>, size: f32x16<S>) -> (u32x16<S>, u32x16<S>) {
         let bits = self.texture.fraction_bits();
-        let half = f32x16::splat(self.simd, (1u32 << (bits - 1)) as f32);
+        let one = f32x16::splat(self.simd, (1u32 << bits) as f32);
+        let half = one * 0.5;
         let to_centre = match self.nearest {
             Some(nearest) => nearest.select(f32x16::splat(self.simd, 0.0), half),
             None => half,
         };
-        let mut units = place * size - to_centre;
+        // A whole texel more than the place, so that truncation is the floor.
+        let mut units = place * size + (one - to_centre);
         if self.bordered {
-            units = units.max(half * -2.0).min(size - 1.0);
+            units = units.max(f32x16::splat(self.simd, 0.0));
         }
-        // Truncated above −1: what is added is a whole texel.
-        let units = i32x16::truncate_from(units + half * 2.0);
+        let mut units = i32x16::truncate_from(units);
+        if self.bordered || self.nearest.is_some() {
+            // At the far end, and beyond a border, the last texel's right edge.
+            units = units.min(i32x16::truncate_from(size) + ((1 << bits) - 1));
+        }
         let fraction = units & ((1 << bits) - 1);
         let first: u32x16<S> = ((units >> bits) - 1).bitcast();
         let second: u32x16<S> = (fraction << (ONE.ilog2() - bits)).bitcast();

@@ -30,8 +30,6 @@ pub(super) struct Line<S: Simd> {
     pub(super) whole: f32x16<S>,
     pub(super) end_at: f32x16<S>,
     pub(super) end: f32x16<S>,
-    /// Sum of all weights.
-    pub(super) total: f32x16<S>,
     /// Pairs of probes of the lane that has most.
     pub(super) pairs: u32,
 }
@@ -230,10 +228,9 @@ impl<S: Simd> Line<S> {
         let some = squared.simd_gt(zero) & squared.simd_le(f32x16::splat(simd, f32::MAX));
         let length = (ellipse.major_squared / some.select(squared, one)).sqrt() / eta;
         let [w, h] = [texture.size().x as f32, texture.size().y as f32];
-        let (step_s, step_t) = (
-            some.select(x, zero) * length * (1.0 / w),
-            some.select(y, zero) * length * (1.0 / h),
-        );
+        let (step_s, step_t) = (x * length * (1.0 / w), y * length * (1.0 / h));
+        let some = some & length.simd_le(f32x16::splat(simd, f32::MAX));
+        let (step_s, step_t) = (some.select(step_s, zero), some.select(step_t, zero));
         let half = eta * 0.5;
         let whole = half.floor();
         let rest = half - whole;
@@ -245,7 +242,6 @@ impl<S: Simd> Line<S> {
             whole: parting.select(zero, whole),
             end_at: parting.select((eta - one) * 0.5, whole + rest * 0.5),
             end: parting.select(one, rest),
-            total: parting.select(two, eta),
             pairs: whole_number(pairs),
         }
     }

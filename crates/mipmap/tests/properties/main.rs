@@ -15,6 +15,7 @@ mod footprint;
 mod kernels;
 mod lod;
 mod oracle;
+mod packet;
 mod pyramid;
 mod rip_map;
 mod stochastic;

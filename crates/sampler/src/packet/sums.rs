@@ -101,10 +101,10 @@ impl<S: Simd> Sums<S> for Sums8<S> {
         let beside = u8x64::block_splat(BESIDE.simd_into(simd));
         for half in 0..2 {
             let mut pairs = [[0u64; 8]; 2];
-            for lane in 0..8 {
-                let from = 8 * half + lane;
-                pairs[0][lane] = quads.upper_pair(from);
-                pairs[1][lane] = quads.lower_pair(from);
+            let [upper_pairs, lower_pairs] = &mut pairs;
+            for (lane, (upper, lower)) in upper_pairs.iter_mut().zip(lower_pairs).enumerate() {
+                *upper = quads.upper_pair(8 * half + lane);
+                *lower = quads.lower_pair(8 * half + lane);
             }
             for (pairs, weights) in pairs.into_iter().zip([&upper, &lower]) {
                 let bytes: u8x64<S> = u64x8::simd_from(simd, pairs).bitcast();
@@ -213,7 +213,7 @@ fn float_weights<S: Simd>(share: &Share<S>) -> [[f32x16<S>; 4]; 4] {
 fn scaled<S: Simd>(mut sums: [f32x16<S>; 4], scale: f32x16<S>) -> [f32x16<S>; 4] {
     let scales = repeated_floats(scale);
     for group in 0..4 {
-        sums[group] = sums[group] * scales[group];
+        sums[group] *= scales[group];
     }
     sums
 }
@@ -239,12 +239,18 @@ impl<S: Simd> Sums<S> for Sums16<S> {
         let quads = Quads::new(simd, texels, stride, offsets);
         for half in 0..2 {
             let mut codes = [[0u64; 8]; 4];
-            for lane in 0..8 {
-                let from = 8 * half + lane;
-                codes[0][lane] = quads.upper(from, Left);
-                codes[1][lane] = quads.upper(from, Right);
-                codes[2][lane] = quads.lower(from, Left);
-                codes[3][lane] = quads.lower(from, Right);
+            let [upper_left, upper_right, lower_left, lower_right] = &mut codes;
+            for (lane, code) in upper_left.iter_mut().enumerate() {
+                *code = quads.upper(8 * half + lane, Left);
+            }
+            for (lane, code) in upper_right.iter_mut().enumerate() {
+                *code = quads.upper(8 * half + lane, Right);
+            }
+            for (lane, code) in lower_left.iter_mut().enumerate() {
+                *code = quads.lower(8 * half + lane, Left);
+            }
+            for (lane, code) in lower_right.iter_mut().enumerate() {
+                *code = quads.lower(8 * half + lane, Right);
             }
             for (codes, weights) in codes.into_iter().zip(&weights) {
                 let codes: u16x32<S> = u64x8::simd_from(simd, codes).bitcast();
