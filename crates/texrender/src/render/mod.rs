@@ -59,7 +59,7 @@ pub fn render(
     let mut tiles: Vec<_> = order
         .into_par_iter()
         .map_init(
-            || TileScratch::new(&geometry.pattern),
+            || TileScratch::new(&geometry.pattern, plan.settings.simd),
             |scratch, index| {
                 let tile = renderer.render(index, scratch);
                 let done = done.fetch_add(1, Ordering::Relaxed) + 1;

@@ -43,13 +43,12 @@ impl Packet {
     }
 }
 
-/// Shades all pairs of a tile, in packets of one kernel each. `triangles`: the tile's list.
+/// Shades all pairs of a tile, in packets of one kernel each.
 #[inline(always)]
 pub(super) fn shade_pairs<S: Simd>(
     simd: S,
     frame: &Frame,
     geometry: &Geometry,
-    triangles: &[u32],
     rect: Rect,
     pairs: &mut Pairs,
     packet: &mut Packet,
@@ -58,22 +57,16 @@ pub(super) fn shade_pairs<S: Simd>(
     let width = rect.size().x;
     let keeps_values = !frame.plan.settings.aovs.is_empty();
     let (mut kernel_index, mut triangle, mut draw) = (usize::MAX, u32::MAX, 0);
-    let Pairs {
-        all,
-        order,
-        shaded,
-        values,
-        ..
-    } = pairs;
+    let (list, shaded, values) = pairs.split();
     let mut out = Output {
         shaded,
         values: keeps_values.then_some(values),
     };
-    for &place in order.iter() {
-        let pair = &all[place as usize];
+    for &place in list.order {
+        let pair = &list.all[place as usize];
         if pair.triangle != triangle {
             triangle = pair.triangle;
-            let t = triangles[triangle as usize] as usize;
+            let t = list.owners[triangle as usize] as usize;
             draw = geometry.draw_of[t];
             let next = frame.kernel_of(draw);
             if next != kernel_index {
@@ -111,9 +104,9 @@ pub(super) fn shade_pairs<S: Simd>(
 
 /// Where shaded pairs go.
 struct Output<'a> {
-    shaded: &'a mut Vec<Shaded>,
+    shaded: &'a mut [Shaded],
     /// If any are kept.
-    values: Option<&'a mut Vec<Values>>,
+    values: Option<&'a mut [Values]>,
 }
 
 /// Shades the packet as far as it is filled, and empties its lanes.
@@ -177,7 +170,6 @@ fn shade_packet<S: Simd>(
 #[derive(Clone, Copy, Debug)]
 pub(super) struct AlphaTest {
     pub pixel: UVec2,
-    /// Place of the triangle in the tile's list.
     pub triangle: u32,
     /// The samples; those whose alpha is below the cutoff are taken out.
     pub mask: u64,
@@ -185,13 +177,12 @@ pub(super) struct AlphaTest {
 
 /// Tests the alpha of masked surfaces, each sample for itself, with its share of the pixel's footprint.
 ///
-/// `tests`: by triangle. `triangles`: the tile's list.
+/// `tests`: by triangle.
 #[inline(always)]
 pub(super) fn test_alphas<S: Simd>(
     simd: S,
     frame: &Frame,
     geometry: &Geometry,
-    triangles: &[u32],
     tests: &mut [AlphaTest],
     packet: &mut Packet,
 ) {
@@ -204,7 +195,7 @@ pub(super) fn test_alphas<S: Simd>(
         let test = tests[place];
         if test.triangle != triangle {
             triangle = test.triangle;
-            let t = triangles[triangle as usize] as usize;
+            let t = triangle as usize;
             let draw = geometry.draw_of[t];
             let next = frame.kernel_of(draw);
             if next != kernel_index {

@@ -23,8 +23,6 @@ pub(super) struct Layers {
 pub(super) struct Resolver<'a> {
     pub frame: &'a Frame<'a>,
     pub geometry: &'a Geometry,
-    /// The tile's list.
-    pub triangles: &'a [u32],
     pub rect: Rect,
 }
 
@@ -95,18 +93,21 @@ impl Resolver<'_> {
             return (sum, values);
         }
 
-        let mut base = [background; raster::MAX_SAMPLES];
+        let mut base = [Light::default(); raster::MAX_SAMPLES];
+        let base = &mut base[..full.count_ones() as usize];
+        base.fill(background);
         for (pair, shaded) in visible.iter().zip(shaded) {
+            let above = shaded.light();
             for (sample, light) in base.iter_mut().enumerate() {
                 if pair.mask >> sample & 1 == 1 {
-                    *light = shaded.light();
+                    *light = above;
                 }
             }
         }
         layers.showing.clear();
         let shows = |place: &usize| pairs.shaded[*place].alpha > 0.0;
         layers.showing.extend(over.filter(shows));
-        let sum = self.composite(pixel, &mut base, pairs, layers);
+        let sum = self.composite(pixel, base, pairs, layers);
         let nearest = || {
             let kept = layers.showing.iter().filter_map(|&place| value(place));
             kept.min_by(|a, b| a.depth.total_cmp(&b.depth))
@@ -123,15 +124,23 @@ impl Resolver<'_> {
         layers: &mut Layers,
     ) -> Light {
         let positions = self.geometry.pattern.positions();
+        let share = 1.0 / positions.len() as f32;
         let Layers { showing, order } = layers;
         let mut sum = Light::default();
         for (sample, (&point, light)) in positions.iter().zip(base).enumerate() {
+            if let [single] = showing.as_slice() {
+                // Nothing to sort.
+                if pairs.all[*single].mask >> sample & 1 == 1 {
+                    light.cover(&pairs.shaded[*single]);
+                }
+                sum.add(*light, share);
+                continue;
+            }
             order.clear();
             let over = showing.iter().map(|&place| (&pairs.all[place], place));
             let over = over.filter(|(pair, _)| pair.mask >> sample & 1 == 1);
             order.extend(over.map(|(pair, place)| {
-                let t = self.triangles[pair.triangle as usize];
-                let triangle = &self.geometry.triangles[t as usize];
+                let triangle = &self.geometry.triangles[pairs.owner(pair) as usize];
                 (triangle.depth_at(pixel, point), place)
             }));
             // Reversed depth: the smallest is the farthest. Stable, so that of equal depths the last
@@ -140,7 +149,7 @@ impl Resolver<'_> {
             for &(_, place) in order.iter() {
                 light.cover(&pairs.shaded[place]);
             }
-            sum.add(*light, 1.0 / positions.len() as f32);
+            sum.add(*light, share);
         }
         sum
     }

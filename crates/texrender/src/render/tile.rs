@@ -2,14 +2,14 @@
 
 use std::sync::atomic::{AtomicU64, Ordering};
 
-use fearless_simd::dispatch;
+use fearless_simd::{Level, dispatch};
 use raster::{Rect, SamplePattern, VisibilityTile};
 
 use super::film::FilmTile;
 use super::frame::Frame;
 use super::geometry::Geometry;
 use super::packets::{AlphaTest, Packet, shade_pairs, test_alphas};
-use super::pairs::{Pair, Pairs, Shaded};
+use super::pairs::{Pairs, Shaded};
 use super::resolve::{Layers, Resolver};
 use super::shade::Values;
 use crate::plan::Plan;
@@ -24,18 +24,19 @@ const TESTS: usize = 64;
 pub(super) struct TileScratch {
     visibility: VisibilityTile,
     tests: Vec<AlphaTest>,
-    blended: Vec<Pair>,
+    /// Masked triangles and the first test of each.
+    tested: Vec<(u32, usize)>,
     pairs: Pairs,
     packet: Packet,
     layers: Layers,
 }
 
 impl TileScratch {
-    pub(super) fn new(pattern: &SamplePattern) -> Self {
+    pub(super) fn new(pattern: &SamplePattern, simd: Level) -> Self {
         Self {
-            visibility: VisibilityTile::new(pattern),
+            visibility: VisibilityTile::with_level(pattern, simd),
             tests: Vec::new(),
-            blended: Vec::new(),
+            tested: Vec::new(),
             pairs: Pairs::default(),
             packet: Packet::default(),
             layers: Layers::default(),
@@ -76,84 +77,67 @@ impl<'a> TileRenderer<'a> {
 
     pub(super) fn render(&self, index: usize, scratch: &mut TileScratch) -> FilmTile {
         let rect = self.geometry.grid.rect(index);
-        let triangles = self.geometry.bins.of(index);
-        self.resolve_visibility(triangles, rect, scratch);
-        self.collect_pairs(rect, scratch);
-        self.shade(triangles, rect, scratch);
+        self.resolve_visibility(index, rect, scratch);
+        self.shade(rect, scratch);
         let resolver = Resolver {
             frame: &self.frame,
             geometry: self.geometry,
-            triangles,
             rect,
         };
         resolver.film(&scratch.pairs, &mut scratch.layers)
     }
 
-    /// Resolves opaque and masked surfaces, and lists the blended ones in front of them.
-    fn resolve_visibility(&self, triangles: &[u32], rect: Rect, scratch: &mut TileScratch) {
+    /// Resolves opaque and masked surfaces, and lists them and the blended ones in front of them.
+    fn resolve_visibility(&self, index: usize, rect: Rect, scratch: &mut TileScratch) {
         let geometry = self.geometry;
-        let all = |t: &&u32| **t < geometry.masked;
-        let opaque = triangles.iter().take_while(all).count();
+        let triangles = geometry.bins.of(index);
+        let opaque = triangles.partition_point(|&t| t < geometry.masked);
         let blended = triangles.partition_point(|&t| t < geometry.blended);
         scratch.visibility.reset(rect);
-        scratch.blended.clear();
-        for (place, &t) in (0u32..).zip(&triangles[..opaque]) {
+        for &t in &triangles[..opaque] {
             let triangle = &geometry.triangles[t as usize];
-            scratch.visibility.draw(place, triangle);
+            scratch.visibility.draw(t, triangle);
         }
-        self.draw_masked(triangles, opaque..blended, scratch);
+        self.draw_masked(&triangles[opaque..blended], scratch);
+
+        let (pairs, visibility) = (&mut scratch.pairs, &mut scratch.visibility);
+        pairs.clear();
+        pairs.push_visible(visibility);
         let width = rect.size().x;
-        for (place, &t) in (0u32..).zip(triangles).skip(blended) {
-            let (listed, triangle) = (&mut scratch.blended, &geometry.triangles[t as usize]);
-            scratch.visibility.visit(triangle, |pixel, mask| {
+        for &t in &triangles[blended..] {
+            visibility.visit(&geometry.triangles[t as usize], |pixel, mask| {
                 let inside = pixel - rect.min;
-                listed.push(Pair {
-                    pixel: inside.y * width + inside.x,
-                    triangle: place,
-                    mask,
-                });
+                pairs.push_blended(inside.y * width + inside.x, t, mask);
             });
         }
-        // Stable: within a pixel the order of submission stays.
-        scratch.blended.sort_by_key(|b| b.pixel);
     }
 
-    /// Draws the masked surfaces at `places` of the tile's list, some at a time: first their alpha is tested where
-    /// they may show, then what is left of them is drawn.
-    fn draw_masked(
-        &self,
-        triangles: &[u32],
-        places: std::ops::Range<usize>,
-        scratch: &mut TileScratch,
-    ) {
+    /// Draws masked surfaces, some at a time: first their alpha is tested where they may show, then what is left of
+    /// them is drawn.
+    fn draw_masked(&self, triangles: &[u32], scratch: &mut TileScratch) {
         let geometry = self.geometry;
-        let mut places = places.peekable();
         let level = self.frame.plan.settings.simd;
-        while places.peek().is_some() {
+        let mut rest = triangles.iter().peekable();
+        while rest.peek().is_some() {
             let (tests, visibility) = (&mut scratch.tests, &mut scratch.visibility);
             tests.clear();
-            let mut drawn = Vec::new();
-            while let Some(place) = places.next_if(|_| tests.len() < TESTS) {
-                let t = triangles[place] as usize;
-                let place = u32::try_from(place).expect("a tile lists fewer than 2³² triangles");
-                let first = tests.len();
-                visibility.visit(&geometry.triangles[t], |pixel, mask| {
+            scratch.tested.clear();
+            while let Some(&t) = rest.next_if(|_| tests.len() < TESTS) {
+                scratch.tested.push((t, tests.len()));
+                visibility.visit(&geometry.triangles[t as usize], |pixel, mask| {
                     tests.push(AlphaTest {
                         pixel,
-                        triangle: place,
+                        triangle: t,
                         mask,
                     });
                 });
-                drawn.push((place, t, first));
             }
             let packet = &mut scratch.packet;
-            dispatch!(level, simd => test_alphas(
-                simd, &self.frame, geometry, triangles, tests, packet,
-            ));
-            for (place, t, first) in drawn {
+            dispatch!(level, simd => test_alphas(simd, &self.frame, geometry, tests, packet));
+            for &(t, first) in &scratch.tested {
                 // The pixels that still show come in the order in which they were listed.
                 let mut listed = tests[first..].iter();
-                visibility.draw_tested(place, &geometry.triangles[t], |pixel, mask| {
+                visibility.draw_tested(t, &geometry.triangles[t as usize], |pixel, mask| {
                     let found = listed.find(|test| test.pixel == pixel);
                     found.map_or(0, |test| test.mask & mask)
                 });
@@ -161,50 +145,27 @@ impl<'a> TileRenderer<'a> {
         }
     }
 
-    /// Lists the pairs of the tile: visible surfaces pixel by pixel, then the blended ones.
-    fn collect_pairs(&self, rect: Rect, scratch: &mut TileScratch) {
-        let pairs = &mut scratch.pairs;
-        pairs.all.clear();
-        for (number, pixel) in (0u32..).zip(rect.pixels()) {
-            scratch.visibility.surfaces(pixel, |triangle, mask| {
-                pairs.all.push(Pair {
-                    pixel: number,
-                    triangle,
-                    mask,
-                });
-            });
-        }
-        pairs.visible = pairs.all.len();
-        pairs.all.extend_from_slice(&scratch.blended);
-    }
-
     /// Shades all pairs.
-    fn shade(&self, triangles: &[u32], rect: Rect, scratch: &mut TileScratch) {
+    fn shade(&self, rect: Rect, scratch: &mut TileScratch) {
         let settings = &self.frame.plan.settings;
         let (pairs, packet) = (&mut scratch.pairs, &mut scratch.packet);
-        pairs.sort(triangles.len());
+        let size = rect.size();
+        pairs.sort(size.x as usize * size.y as usize);
         pairs.shaded.resize(pairs.all.len(), Shaded::default());
         if !settings.aovs.is_empty() {
             pairs.values.resize(pairs.all.len(), Values::NOTHING);
         }
         dispatch!(settings.simd, simd => shade_pairs(
-            simd, &self.frame, self.geometry, triangles, rect, pairs, packet,
+            simd, &self.frame, self.geometry, rect, pairs, packet,
         ));
-        self.mark_visible(triangles, pairs);
+        self.mark_visible(pairs.owners());
     }
 
     /// Marks the elements that own a sample.
-    fn mark_visible(&self, triangles: &[u32], pairs: &Pairs) {
-        let mut last = u32::MAX;
-        for &place in &pairs.order {
-            let place = pairs.all[place as usize].triangle;
-            if place == last {
-                continue;
-            }
-            last = place;
-            let t = triangles[place as usize] as usize;
-            let draw = self.geometry.draw_of[t] as usize;
-            let source = self.geometry.triangles[t].source() as usize;
+    fn mark_visible(&self, triangles: &[u32]) {
+        for &t in triangles {
+            let draw = self.geometry.draw_of[t as usize] as usize;
+            let source = self.geometry.triangles[t as usize].source() as usize;
             let element = self.geometry.first_element[draw] + source;
             // Most elements were met before: only the first writes what all threads share.
             let (word, bit) = (&self.visible[element / 64], 1 << (element % 64));
