@@ -7,7 +7,7 @@ use crate::depth::DepthPlane;
 use crate::edge::{Edge, doubled_area};
 use crate::setup::Corners;
 use crate::viewport::SUBPIXELS;
-use crate::{SamplePattern, Surface};
+use crate::{Planes, SamplePattern, Surface};
 
 /// Which side of a surface is seen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -109,6 +109,13 @@ impl Triangle {
             }
         }
         self.weights_from(&edges, sums, mask.count_ones().into())
+    }
+
+    /// Its edge functions and 1/w, for [`texcoord::packet::perspective_weights`] and the like.
+    #[must_use]
+    pub fn planes(&self) -> Planes {
+        let positions = self.positions.map(|p| p.to_array());
+        Planes::new(positions, self.inv_w.to_array(), self.piece.as_deref())
     }
 
     /// Depth at a point, z/w in 0..=1 (1 near, 0 far), held within the range of the corners.

@@ -24,7 +24,7 @@ pub use filter::MapReading;
 pub use kernel::{
     Coverage, Curvature, Kernel, Lighting, LitKernel, Map, Reflectance, Sidedness, TangentSource,
 };
-pub use texture::{PyramidNeed, TextureNeed, TextureRole};
+pub use texture::{PyramidNeed, SheetNeed, TextureNeed, TextureRole};
 pub use view::Viewpoint;
 
 /// What a picture needs.
@@ -40,6 +40,8 @@ pub struct Plan {
     pub kernels: Vec<Kernel>,
     /// Images to decode, one entry an image and role.
     pub textures: Vec<TextureNeed>,
+    /// Pyramids to lay out for packets.
+    pub sheets: Vec<SheetNeed>,
     /// Tangents to generate.
     pub tangents: Vec<TangentNeed>,
     /// Light from afar, if any visible surface or the background shows it.
@@ -120,6 +122,7 @@ impl Plan {
             draws: Vec::new(),
             kernels: Vec::new(),
             textures: Vec::new(),
+            sheets: Vec::new(),
             tangents: Vec::new(),
             environment: None,
             lights: Vec::new(),

@@ -5,9 +5,17 @@
 //! stage, sample by sample. Blended surfaces are laid over, per sample, in exact order of depth.
 
 mod film;
-mod fragment;
+mod fragments;
+mod frame;
 mod geometry;
+mod lanes;
+mod layout;
+mod packets;
+mod pairs;
+mod record;
+mod resolve;
 mod shade;
+mod textures;
 mod tile;
 
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -51,7 +59,7 @@ pub fn render(
     let mut tiles: Vec<_> = order
         .into_par_iter()
         .map_init(
-            || TileScratch::new(&geometry.pattern),
+            || TileScratch::new(&geometry.pattern, plan.settings.simd),
             |scratch, index| {
                 let tile = renderer.render(index, scratch);
                 let done = done.fetch_add(1, Ordering::Relaxed) + 1;
