@@ -27,16 +27,12 @@ pub(super) struct Resolver<'a> {
 }
 
 impl Resolver<'_> {
-    /// The pixels, row by row.
-    pub(super) fn film(&self, pairs: &Pairs, layers: &mut Layers) -> FilmTile {
+    /// The pixels, row by row, into `film`.
+    pub(super) fn resolve(&self, pairs: &Pairs, layers: &mut Layers, film: &mut FilmTile) {
         let plan = self.frame.plan;
         let pixels = (self.rect.size().x * self.rect.size().y) as usize;
-        let mut film = FilmTile {
-            lit: Vec::with_capacity(pixels),
-            unlit: plan.has_unlit().then(|| Vec::with_capacity(pixels)),
-            aovs: Vec::new(),
-            shaded: pairs.all.len(),
-        };
+        film.clear(pixels, plan);
+        film.shaded = pairs.all.len();
         // Both lists are sorted by pixel and met in step.
         let (mut surface, mut blended) = (0, pairs.visible);
         let run = |from: usize, end: usize, number: u32| {
@@ -53,7 +49,6 @@ impl Resolver<'_> {
                 film.push_aovs(&plan.settings.aovs, values.unwrap_or(Values::NOTHING));
             }
         }
-        film
     }
 
     /// The light of a pixel, and its values if they are kept. `surfaces`, `over`: its visible and blended pairs.
