@@ -5,6 +5,7 @@
 
 use fearless_simd::{Simd, f32x4, f32x16, mask32x16, prelude::*, u32x4, u32x16};
 use texcoord::packet::LANES;
+use texcoord::unrolled::four;
 
 use crate::setup::SMALL_WINDOW;
 
@@ -152,8 +153,11 @@ impl SampleBuffer {
         let stride = self.stride;
         let end = place + 3 * stride + SIDE;
         let depths = &mut self.depths[place..end];
-        let row = |y: usize| f32x4::from_slice(simd, &depths[y * stride..y * stride + SIDE]);
-        let old = row(0).combine(row(1)).combine(row(2).combine(row(3)));
+        let [a, b, c, d] = four(
+            #[inline(always)]
+            |y| f32x4::from_slice(simd, &depths[y * stride..y * stride + SIDE]),
+        );
+        let old = a.combine(b).combine(c.combine(d));
         let visible = inside & depth.simd_gt(old);
         if !visible.any_true() {
             return;
@@ -170,8 +174,11 @@ impl SampleBuffer {
         }
 
         let owners = &mut self.owners[place..end];
-        let row = |y: usize| u32x4::from_slice(simd, &owners[y * stride..y * stride + SIDE]);
-        let old = row(0).combine(row(1)).combine(row(2).combine(row(3)));
+        let [a, b, c, d] = four(
+            #[inline(always)]
+            |y| u32x4::from_slice(simd, &owners[y * stride..y * stride + SIDE]),
+        );
+        let old = a.combine(b).combine(c.combine(d));
         let (top, bottom) = visible.select(u32x16::splat(simd, owner), old).split();
         let rows = [
             top.split().0,

@@ -3,6 +3,7 @@
 use fearless_simd::{Simd, i32x16, prelude::*};
 use glam::DVec4;
 use texcoord::packet::LANES;
+use texcoord::unrolled::{three, two};
 
 use crate::bins::for_each_tile;
 use crate::samples::SampleExtent;
@@ -243,7 +244,10 @@ impl PacketCorners {
             outside: 0,
         };
         for (lane, triangle) in triangles.iter().enumerate() {
-            let [a, b, c] = triangle.map(|v| &vertices[(v + first) as usize]);
+            let [a, b, c] = three(
+                #[inline(always)]
+                |k| &vertices[(triangle[k] + first) as usize],
+            );
             let all = a.flags & b.flags & c.flags & BEYOND;
             let any = (a.flags | b.flags | c.flags) & CLIPPED;
             corners.outside |= u32::from(all != 0) << lane;
@@ -259,24 +263,35 @@ impl PacketCorners {
     /// Which have an area, the side that is asked for, and a sample of the target in their bounding box.
     #[inline(always)]
     fn test<S: Simd>(&self, simd: S, target: &Target<'_>, cull: Cull) -> PacketTest {
-        let load = |lanes: &[i32; LANES]| i32x16::from_slice(simd, lanes);
-        let axes = [&self.x, &self.y].map(|axis| [0, 1, 2].map(|k| load(&axis[k])));
-        let low = axes.map(|[a, b, c]| a.min(b).min(c));
-        let high = axes.map(|[a, b, c]| a.max(b).max(c));
+        let [ax, bx, cx] = three(
+            #[inline(always)]
+            |k| i32x16::from_slice(simd, &self.x[k]),
+        );
+        let [ay, by, cy] = three(
+            #[inline(always)]
+            |k| i32x16::from_slice(simd, &self.y[k]),
+        );
+        let low = [ax.min(bx).min(cx), ay.min(by).min(cy)];
+        let high = [ax.max(bx).max(cx), ay.max(by).max(cy)];
 
         // Pixels with a sample in the box.
         let viewport = target.grid.viewport();
         let size = [viewport.width, viewport.height].map(u32::cast_signed);
         let shift = SUBPIXELS.trailing_zeros();
         let (from, to) = (target.extent.max, target.extent.min);
-        let first = [0, 1].map(|k| ((low[k] + (SUBPIXELS - 1 - from[k])) >> shift).max(0));
-        let last = [0, 1].map(|k| ((high[k] - to[k]) >> shift).min(size[k] - 1));
+        let first = two(
+            #[inline(always)]
+            |k| ((low[k] + (SUBPIXELS - 1 - from[k])) >> shift).max(0),
+        );
+        let last = two(
+            #[inline(always)]
+            |k| ((high[k] - to[k]) >> shift).min(size[k] - 1),
+        );
         let seen = first[0].simd_le(last[0]) & first[1].simd_le(last[1]);
 
         let longest = (high[0] - low[0]).max(high[1] - low[1]);
         let facing = if longest.simd_lt(1 << 14).all_true() {
             // Products fit i32.
-            let [[ax, bx, cx], [ay, by, cy]] = axes;
             let area = (bx - ax) * (cy - ay) - (by - ay) * (cx - ax);
             match cull {
                 Cull::None => area.simd_eq(0).to_bitmask() ^ 0xffff,
@@ -335,9 +350,18 @@ fn item(index: usize) -> u32 {
 /// A triangle as a tile takes it.
 #[inline(always)]
 pub(crate) fn corners_of(vertices: &[ScreenVertex], whole: &Whole) -> Corners {
-    let corners = whole.vertices.map(|v| &vertices[v as usize]);
+    let corners = three(
+        #[inline(always)]
+        |k| &vertices[whole.vertices[k] as usize],
+    );
     Corners {
-        positions: corners.map(|v| v.position),
-        depth: corners.map(|v| v.depth),
+        positions: three(
+            #[inline(always)]
+            |k| corners[k].position,
+        ),
+        depth: three(
+            #[inline(always)]
+            |k| corners[k].depth,
+        ),
     }
 }

@@ -2,6 +2,7 @@
 
 use fearless_simd::{Simd, f32x16, f64x8, prelude::*};
 use texcoord::packet::F64x16;
+use texcoord::unrolled::two;
 
 /// Depth over a triangle: d₀ + E₁·(d₁ − d₀)/A + E₂·(d₂ − d₀)/A from the exact edge values.
 ///
@@ -48,15 +49,18 @@ impl DepthPlane {
         edge_1: F64x16<S>,
         edge_2: F64x16<S>,
     ) -> f32x16<S> {
-        let half = |k: usize| {
-            let rise = edge_1.0[k] * self.slope_1 + edge_2.0[k] * self.slope_2;
-            let depth = rise + self.base;
-            // Comparisons, not min and max: those leave the sign of zero to the machine.
-            let (low, high) = (f64x8::splat(simd, self.low), f64x8::splat(simd, self.high));
-            let depth = depth.simd_lt(low).select(low, depth);
-            depth.simd_gt(high).select(high, depth)
-        };
-        half(0).narrow(half(1))
+        let (low, high) = (f64x8::splat(simd, self.low), f64x8::splat(simd, self.high));
+        let [first, second] = two(
+            #[inline(always)]
+            |k| {
+                let rise = edge_1.0[k] * self.slope_1 + edge_2.0[k] * self.slope_2;
+                let depth = rise + self.base;
+                // Comparisons, not min and max: those leave the sign of zero to the machine.
+                let depth = depth.simd_lt(low).select(low, depth);
+                depth.simd_gt(high).select(high, depth)
+            },
+        );
+        first.narrow(second)
     }
 
     /// No sample of the triangle is nearer than this.

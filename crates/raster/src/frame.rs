@@ -1,7 +1,8 @@
 //! All triangles of a frame, from vertices to tiles, in memory that is used again.
 
-use fearless_simd::{Level, dispatch};
+use fearless_simd::{Level, Simd, dispatch};
 use glam::{DVec3, DVec4};
+use texcoord::unrolled::three;
 
 use crate::chunk::{CHUNK_TRIANGLES, Chunk, MeshPart, PIECE, Target, corners_of};
 use crate::samples::SampleExtent;
@@ -153,26 +154,39 @@ impl Frame {
 
     /// Draws the triangles of a tile, in order. Owners are those that [`surface`](Self::surface) takes.
     pub fn draw_tile(&self, tile: usize, visibility: &mut VisibilityTile) {
-        let surfaces = (0u32..)
-            .zip(&self.chunks[..self.used])
-            .flat_map(|(number, chunk)| {
-                chunk.of(tile).iter().map(move |&item| {
-                    let corners = if item & PIECE == 0 {
-                        corners_of(&self.vertices, &chunk.wholes[item as usize])
-                    } else {
-                        chunk.pieces[(item ^ PIECE) as usize].triangle.corners()
-                    };
-                    (number << ITEM_BITS | item, corners)
-                })
-            });
-        visibility.draw_all(surfaces);
+        let (chunks, level) = (&self.chunks[..self.used], visibility.level());
+        for (number, chunk) in (0u32..).zip(chunks) {
+            let items = chunk.of(tile);
+            if !items.is_empty() {
+                dispatch!(level, simd => self.draw_items(simd, number, chunk, items, visibility));
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn draw_items<S: Simd>(
+        &self,
+        simd: S,
+        number: u32,
+        chunk: &Chunk,
+        items: &[u32],
+        visibility: &mut VisibilityTile,
+    ) {
+        for &item in items {
+            let corners = if item & PIECE == 0 {
+                corners_of(&self.vertices, &chunk.wholes[item as usize])
+            } else {
+                chunk.pieces[(item ^ PIECE) as usize].triangle.corners()
+            };
+            visibility.draw_corners(simd, number << ITEM_BITS | item, &corners);
+        }
     }
 
     /// The triangle that owns a sample.
     ///
     /// # Panics
     /// If it is not an owner that this frame gave.
-    #[inline]
+    #[inline(always)]
     #[must_use]
     pub fn surface(&self, owner: u32) -> Surface<'_> {
         let chunk = &self.chunks[(owner >> ITEM_BITS) as usize];
@@ -182,12 +196,21 @@ impl Frame {
             return piece.triangle.surface(piece.vertices);
         }
         let whole = &chunk.wholes[item as usize];
-        let corners = whole.vertices.map(|v| &self.vertices[v as usize]);
+        let corners = three(
+            #[inline(always)]
+            |k| &self.vertices[whole.vertices[k] as usize],
+        );
         Surface {
             source: whole.source,
             vertices: whole.vertices,
-            positions: corners.map(|v| v.position),
-            inv_w: corners.map(|v| v.inv_w),
+            positions: three(
+                #[inline(always)]
+                |k| corners[k].position,
+            ),
+            inv_w: three(
+                #[inline(always)]
+                |k| corners[k].inv_w,
+            ),
             piece: None,
         }
     }

@@ -8,6 +8,7 @@
 use fearless_simd::{Simd, f32x16, i32x16, mask32x16, prelude::*};
 use glam::IVec2;
 use texcoord::packet::{F64x16, LANES};
+use texcoord::unrolled::{three, two};
 
 use crate::buffer::{BLOCK_ROWS, SampleBuffer};
 use crate::depth::DepthPlane;
@@ -61,18 +62,30 @@ pub(crate) struct SampleEdges {
     depth: [i64; 2],
 }
 
+impl ScanBlock {
+    #[inline(always)]
+    fn crosses(&self, edge: usize) -> bool {
+        self.crossing >> edge & 1 == 1
+    }
+}
+
 impl<'a, S: Simd> Scan<'a, S> {
     #[inline(always)]
     pub(crate) fn new(simd: S, setup: &'a Setup, plane: &'a DepthPlane) -> Self {
         let lanes = i32x16::from_fn(simd, |i| i as i32);
         let units = F64x16::from_fn(simd, |i| i as f64 * f64::from(SUBPIXELS));
-        let depth_step = |edge: usize| units * F64x16::splat(simd, f64::from(setup.a[edge]));
         Self {
             simd,
             setup,
             plane,
-            steps: setup.a.map(|a| lanes * a),
-            depth_steps: [depth_step(1), depth_step(2)],
+            steps: three(
+                #[inline(always)]
+                |edge| lanes * setup.a[edge],
+            ),
+            depth_steps: two(
+                #[inline(always)]
+                |k| units * F64x16::splat(simd, f64::from(setup.a[k + 1])),
+            ),
         }
     }
 
@@ -99,14 +112,32 @@ impl<'a, S: Simd> Scan<'a, S> {
     pub(crate) fn sample_edges(&self, block: &ScanBlock, position: IVec2) -> SampleEdges {
         let x = i64::from(block.at[0]) * i64::from(SUBPIXELS) + i64::from(position.x);
         let y = i64::from(block.rows[0]) * i64::from(SUBPIXELS) + i64::from(position.y);
-        let values = [0, 1, 2].map(|edge| self.setup.edge_at(edge, x, y));
-        let crosses = |edge: usize| block.crossing >> edge & 1 == 1;
+        let values = three(
+            #[inline(always)]
+            |edge| self.setup.edge_at(edge, x, y),
+        );
         SampleEdges {
-            cover: [0, 1, 2].map(|edge| {
-                let value = values[edge] + i64::from(self.setup.bias[edge]);
-                if crosses(edge) { pixels(value) } else { 0 }
-            }),
-            slope: [0, 1, 2].map(|edge| if crosses(edge) { self.setup.b[edge] } else { 0 }),
+            cover: three(
+                #[inline(always)]
+                |edge| {
+                    let value = values[edge] + i64::from(self.setup.bias[edge]);
+                    if block.crosses(edge) {
+                        pixels(value)
+                    } else {
+                        0
+                    }
+                },
+            ),
+            slope: three(
+                #[inline(always)]
+                |edge| {
+                    if block.crosses(edge) {
+                        self.setup.b[edge]
+                    } else {
+                        0
+                    }
+                },
+            ),
             depth: [values[1], values[2]],
         }
     }
@@ -117,27 +148,32 @@ impl<'a, S: Simd> Scan<'a, S> {
         if block.crossing == 0 {
             return mask32x16::splat(self.simd, true);
         }
-        let value = |edge: usize| {
-            let start = i32x16::splat(self.simd, edges.cover[edge] + edges.slope[edge] * row);
-            let along = if block.crossing >> edge & 1 == 1 {
-                self.steps[edge]
-            } else {
-                i32x16::splat(self.simd, 0)
-            };
-            start + along
-        };
+        let [a, b, c] = three(
+            #[inline(always)]
+            |edge| {
+                let start = i32x16::splat(self.simd, edges.cover[edge] + edges.slope[edge] * row);
+                if block.crosses(edge) {
+                    start + self.steps[edge]
+                } else {
+                    start
+                }
+            },
+        );
         // The sign bit of the union is set where any edge is negative.
-        (value(0) | value(1) | value(2)).simd_ge(0)
+        (a | b | c).simd_ge(0)
     }
 
     /// Depths of a row.
     #[inline(always)]
     pub(crate) fn depth(&self, edges: &SampleEdges, row: i32) -> f32x16<S> {
-        let value = |k: usize| {
-            let down = i64::from(self.setup.b[k + 1]) * i64::from(row * SUBPIXELS);
-            F64x16::splat(self.simd, (edges.depth[k] + down) as f64) + self.depth_steps[k]
-        };
-        self.plane.packet(self.simd, value(0), value(1))
+        let [edge_1, edge_2] = two(
+            #[inline(always)]
+            |k| {
+                let down = i64::from(self.setup.b[k + 1]) * i64::from(row * SUBPIXELS);
+                F64x16::splat(self.simd, (edges.depth[k] + down) as f64) + self.depth_steps[k]
+            },
+        );
+        self.plane.packet(self.simd, edge_1, edge_2)
     }
 }
 
@@ -158,13 +194,22 @@ pub(crate) fn draw_small<S: Simd>(
     let right = f32x16::from_fn(simd, |i| (i % 4) as f32 * unit);
     let down = f32x16::from_fn(simd, |i| (i / 4) as f32 * unit);
     // All values are integers below 2²⁴: f32 holds them exactly.
-    let slopes = [0, 1, 2].map(|i| right * setup.a[i] as f32 + down * setup.b[i] as f32);
+    let slopes = three(
+        #[inline(always)]
+        |i| right * setup.a[i] as f32 + down * setup.b[i] as f32,
+    );
     for (sample, position) in positions.iter().enumerate() {
         let (x, y) = (left * SUBPIXELS + position.x, top * SUBPIXELS + position.y);
-        let values = [0, 1, 2].map(|i| slopes[i] + setup.small_edge_at(i, x, y) as f32);
+        let values = three(
+            #[inline(always)]
+            |i| slopes[i] + setup.small_edge_at(i, x, y) as f32,
+        );
         // E + bias ≥ 0, in integers: E > −1 − bias.
-        let holds = |i: usize| values[i].simd_gt((-1 - setup.bias[i]) as f32);
-        let inside = holds(0) & holds(1) & holds(2);
+        let [a, b, c] = three(
+            #[inline(always)]
+            |i| values[i].simd_gt((-1 - setup.bias[i]) as f32),
+        );
+        let inside = a & b & c;
         if inside.any_true() {
             let depth = plane.packet(simd, F64x16::widen(values[1]), F64x16::widen(values[2]));
             let place = buffer.place(index(left), index(top), sample);

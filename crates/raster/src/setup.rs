@@ -1,5 +1,7 @@
 //! A triangle prepared for the samples of one rectangle of pixels.
 
+use texcoord::unrolled::three;
+
 use crate::depth::DepthPlane;
 use crate::samples::SampleExtent;
 use crate::viewport::SUBPIXELS;
@@ -102,7 +104,10 @@ impl Setup {
         if window.is_empty() {
             return None;
         }
-        let points = positions.map(|at| [at[0] - origin[0], at[1] - origin[1]]);
+        let points = three(
+            #[inline(always)]
+            |k| [positions[k][0] - origin[0], positions[k][1] - origin[1]],
+        );
         let side = |i: usize, j: usize, axis: usize| points[j][axis] - points[i][axis];
         let doubled = i64::from(side(0, 1, 0)) * i64::from(side(0, 2, 1))
             - i64::from(side(0, 1, 1)) * i64::from(side(0, 2, 0));
@@ -118,7 +123,10 @@ impl Setup {
             side(2, 0, 0) * turn,
             side(0, 1, 0) * turn,
         ];
-        let bias = [0, 1, 2].map(|i| i32::from(a[i] > 0 || (a[i] == 0 && b[i] > 0)) - 1);
+        let bias = three(
+            #[inline(always)]
+            |i| i32::from(a[i] > 0 || (a[i] == 0 && b[i] > 0)) - 1,
+        );
         let longest = (high[0] - low[0]).max(high[1] - low[1]);
         let [wide, tall] = [0, 1].map(|axis| window.max[axis] - window.min[axis]);
         Some(Self {

@@ -2,6 +2,7 @@
 
 use fearless_simd::{Simd, f64x8, mask64x8, prelude::*};
 use texcoord::packet::{F64x16, LANES};
+use texcoord::unrolled::two;
 
 use crate::Viewport;
 use crate::viewport::{GUARD_PIXELS, SUBPIXELS};
@@ -44,12 +45,11 @@ pub fn project<S: Simd>(
 ) {
     assert!(out.len() <= LANES, "a packet has 16 vertices");
     let [x, y, z, w] = *clip;
-    let splat = |value: f64| F64x16::splat(simd, value);
-    let half = splat(0.5);
-    let inv_w = splat(1.0) / w;
+    let half = F64x16::splat(simd, 0.5);
+    let inv_w = F64x16::splat(simd, 1.0) / w;
     let depth = z / w;
-    let column = (x / w * half + half) * splat(f64::from(viewport.width));
-    let row = (half - y / w * half) * splat(f64::from(viewport.height));
+    let column = (x / w * half + half) * F64x16::splat(simd, f64::from(viewport.width));
+    let row = (half - y / w * half) * F64x16::splat(simd, f64::from(viewport.height));
     let columns = snapped(simd, column).to_array();
     let rows = snapped(simd, row).to_array();
     let (depths, inv_ws) = (depth.to_array(), inv_w.to_array());
@@ -70,11 +70,14 @@ pub fn project<S: Simd>(
 fn snapped<S: Simd>(simd: S, pixels: F64x16<S>) -> F64x16<S> {
     let reach = GUARD_PIXELS * f64::from(SUBPIXELS);
     let (low, high) = (f64x8::splat(simd, -reach), f64x8::splat(simd, reach));
-    F64x16(pixels.0.map(|half| {
-        let units = half * f64::from(SUBPIXELS);
-        let units = units.simd_lt(low).select(low, units);
-        units.simd_gt(high).select(high, units) + INTEGER
-    }))
+    F64x16(two(
+        #[inline(always)]
+        |k| {
+            let units = pixels.0[k] * f64::from(SUBPIXELS);
+            let units = units.simd_lt(low).select(low, units);
+            units.simd_gt(high).select(high, units) + INTEGER
+        },
+    ))
 }
 
 #[allow(
@@ -97,10 +100,8 @@ fn flags<S: Simd>(
     let [x, y, z, w] = *clip;
     let zero = F64x16::splat(simd, 0.0);
     let guard = viewport.guard_ndc();
-    let [across, along] = [guard.x, guard.y].map(|g| F64x16::splat(simd, g) * w);
-    let beyond = [w - z, z, w - x, w + x, w - y, w + y];
-    let past_guard = [w - z, z, across - x, across + x, along - y, along + y];
-    let finite = |v: F64x16<S>| bits(v.0.map(|half| half.is_finite()));
+    let across = F64x16::splat(simd, guard.x) * w;
+    let along = F64x16::splat(simd, guard.y) * w;
     let usable = finite(column)
         & finite(row)
         & finite(depth)
@@ -111,10 +112,19 @@ fn flags<S: Simd>(
         & finite(w)
         & below(zero, w)
         & below(zero, inv_w);
-    let clipped = past_guard
-        .iter()
-        .fold(!usable & 0xffff, |all, &d| all | below(d, zero));
-    let planes = beyond.map(|d| below(d, zero));
+    let planes = [
+        below(w - z, zero),
+        below(z, zero),
+        below(w - x, zero),
+        below(w + x, zero),
+        below(w - y, zero),
+        below(w + y, zero),
+    ];
+    let past_guard = below(across - x, zero)
+        | below(across + x, zero)
+        | below(along - y, zero)
+        | below(along + y, zero);
+    let clipped = (!usable & 0xffff) | planes[0] | planes[1] | past_guard;
     let any = planes.iter().fold(clipped, |all, &plane| all | plane);
     if any == 0 {
         return [0; LANES];
@@ -126,6 +136,12 @@ fn flags<S: Simd>(
             all | bit(plane) << k
         })
     })
+}
+
+/// Lanes that are finite numbers.
+#[inline(always)]
+fn finite<S: Simd>(v: F64x16<S>) -> u64 {
+    bits([v.0[0].is_finite(), v.0[1].is_finite()])
 }
 
 /// Lanes where a < b.

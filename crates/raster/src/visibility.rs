@@ -123,6 +123,11 @@ impl VisibilityTile {
         self.rect
     }
 
+    /// The instruction set that it draws with.
+    pub(crate) fn level(&self) -> Level {
+        self.level
+    }
+
     /// The pattern that it was made with.
     #[must_use]
     pub fn pattern(&self) -> &SamplePattern {
@@ -133,18 +138,6 @@ impl VisibilityTile {
     pub fn draw(&mut self, index: u32, triangle: &Triangle) {
         let corners = triangle.corners();
         dispatch!(self.level, simd => self.draw_corners(simd, index, &corners));
-    }
-
-    /// Draws surfaces in order, each with its index.
-    pub(crate) fn draw_all(&mut self, surfaces: impl Iterator<Item = (u32, Corners)>) {
-        dispatch!(self.level, simd => self.draw_each(simd, surfaces));
-    }
-
-    #[inline(always)]
-    fn draw_each<S: Simd>(&mut self, simd: S, surfaces: impl Iterator<Item = (u32, Corners)>) {
-        for (owner, corners) in surfaces {
-            self.draw_corners(simd, owner, &corners);
-        }
     }
 
     /// Draws a surface with holes: `test` gets a pixel and the samples that are covered and in front, and
@@ -277,8 +270,9 @@ impl VisibilityTile {
         size.map(|n| signed(n as usize))
     }
 
+    /// Draws an opaque surface.
     #[inline(always)]
-    fn draw_corners<S: Simd>(&mut self, simd: S, owner: u32, corners: &Corners) {
+    pub(crate) fn draw_corners<S: Simd>(&mut self, simd: S, owner: u32, corners: &Corners) {
         debug_assert!(owner != NOBODY, "u32::MAX stands for the background");
         let Some((setup, plane)) = self.setup(corners) else {
             return;

@@ -127,7 +127,7 @@ fn fixed_srgb_u8() -> &'static [u16; 256] {
 }
 
 /// Whether `channel` of `channels` is alpha: the last of two or of four.
-const fn is_alpha(channel: usize, channels: usize) -> bool {
+pub(crate) const fn is_alpha(channel: usize, channels: usize) -> bool {
     channels.is_multiple_of(2) && channel + 1 == channels
 }
 

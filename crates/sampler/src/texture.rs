@@ -4,9 +4,7 @@ use half::slice::HalfFloatSliceExt;
 use crate::error::Error;
 use crate::format::{AlphaMode, Component, Format, Texels, Transfer};
 use crate::texel::{Tables, decode_row_float, encode_f16, read_float, read_u8, read_u16};
-use crate::transfer::{
-    SrgbU8Encoder, encode_srgb_u16, encode_unorm_u8, encode_unorm_u16, linear_to_srgb,
-};
+use crate::transfer::{encode_srgb_u16, encode_u8, encode_unorm_u16, linear_to_srgb};
 
 /// A two-dimensional array of texels and what they mean.
 ///
@@ -284,17 +282,10 @@ pub(crate) fn component_count(size: UVec2, channels: u8) -> Result<usize, Error>
 fn encode(format: Format, linear: &[f32]) -> Texels {
     let channels = usize::from(format.channels);
     match (format.component, format.transfer) {
-        (Component::U8, Transfer::Linear) => {
-            Texels::U8(linear.iter().map(|&value| encode_unorm_u8(value)).collect())
-        }
-        (Component::U8, Transfer::Srgb) => {
-            let encoder = SrgbU8Encoder::shared();
-            Texels::U8(encode_colour(
-                linear,
-                channels,
-                |light| encoder.encode(light),
-                encode_unorm_u8,
-            ))
+        (Component::U8, transfer) => {
+            let mut codes = vec![0; linear.len()];
+            encode_u8(transfer, channels, linear, &mut codes);
+            Texels::U8(codes)
         }
         (Component::U16, Transfer::Linear) => Texels::U16(
             linear

@@ -19,6 +19,12 @@
 
 use std::sync::OnceLock;
 
+use fearless_simd::prelude::*;
+use fearless_simd::{Level, Simd, dispatch, f32x16, u16x32, u32x16};
+
+use crate::format::Transfer;
+use crate::texel::is_alpha;
+
 /// Encoded value up to which the curve is a straight line (IEC 61966-2-1).
 const LINEAR_UP_TO_ENCODED: f64 = 0.040_45;
 /// Light up to which the curve is a straight line (IEC 61966-2-1).
@@ -119,6 +125,19 @@ pub fn encode_unorm_u8(value: f32) -> u8 {
     (f64::from(value) * 255.0 + 0.5) as u8
 }
 
+/// As [`encode_unorm_u8`], sixteen at once: codes in 0..=255.
+#[inline(always)]
+pub fn encode_unorm_u8_packet<S: Simd>(simd: S, value: f32x16<S>) -> u32x16<S> {
+    let zero = f32x16::splat(simd, 0.0);
+    let held = value.simd_gt(zero).select(value, zero);
+    let (low, high) = held.min(f32x16::splat(simd, 1.0)).widen();
+    // The floor in f64: narrowing alone could round up to the next code.
+    let codes = (low * 255.0 + 0.5)
+        .floor()
+        .narrow((high * 255.0 + 0.5).floor());
+    u32x16::truncate_from(codes)
+}
+
 /// The nearest 16-bit linear code for a value: 65535·x rounded, halves up; clamps, and NaN gives 0.
 #[inline]
 pub fn encode_unorm_u16(value: f32) -> u16 {
@@ -128,17 +147,12 @@ pub fn encode_unorm_u16(value: f32) -> u16 {
 /// Light to 8-bit sRGB by table: each slot of 2⁻⁷ octave holds at most one of the 255 rounding thresholds.
 ///
 /// The code at the slot's start plus one comparison gives the exactly rounded code. 13 octaves · 128 slots of
-/// 8 bytes stay in a first-level cache. Hold the reference from [`SrgbU8Encoder::shared`] outside a loop.
+/// 4 bytes stay in a first-level cache. Hold the reference from [`SrgbU8Encoder::shared`] outside a loop.
 #[derive(Debug)]
 pub struct SrgbU8Encoder {
-    slots: Box<[Slot; SLOTS]>,
-}
-
-/// The first light that is given code `code + 1`, where the slot begins inside code `code`.
-#[derive(Debug, Clone, Copy)]
-struct Slot {
-    threshold: f32,
-    code: u8,
+    /// The code at the slot's start in the highest byte. Below, the low 16 bits of the first light of the next code;
+    /// 2¹⁶, which no light has, where none begins in the slot.
+    slots: Box<[u32; SLOTS]>,
 }
 
 /// Below 2⁻¹³ the code is 0: the first threshold is 0.5/255/12.92 ≈ 1.52e-4 > 2⁻¹³ ≈ 1.22e-4.
@@ -148,6 +162,7 @@ const TABLE_TO: f32 = 1.0 - f32::EPSILON / 2.0;
 /// Bits dropped from an f32's pattern: 7 bits of significand are kept. The curve's slope is at most
 /// 168 codes per unit over [½, 1), hence 0.66 codes a slot there, and fewer below.
 const SLOT_SHIFT: u32 = 16;
+const LOW_BITS: u32 = (1 << SLOT_SHIFT) - 1;
 const FIRST_SLOT: u32 = TABLE_FROM.to_bits() >> SLOT_SHIFT;
 const SLOTS: usize = ((TABLE_TO.to_bits() >> SLOT_SHIFT) - FIRST_SLOT + 1) as usize;
 
@@ -163,17 +178,14 @@ impl SrgbU8Encoder {
         let thresholds: Vec<f32> = (0..255)
             .map(|k| f32_at_or_above(decode_f64((f64::from(k) + 0.5) / 255.0)))
             .collect();
-        let mut slots = Box::new(
-            [Slot {
-                threshold: f32::INFINITY,
-                code: 255,
-            }; SLOTS],
-        );
+        let mut slots = Box::new([0; SLOTS]);
         for (slot, bits) in slots.iter_mut().zip(FIRST_SLOT..) {
             let start = f32::from_bits(bits << SLOT_SHIFT);
             let code = thresholds.partition_point(|&threshold| threshold <= start);
-            slot.code = u8::try_from(code).expect("255 thresholds");
-            slot.threshold = thresholds.get(code).copied().unwrap_or(f32::INFINITY);
+            let next = thresholds.get(code).map(|threshold| threshold.to_bits());
+            let within = next.filter(|next| next >> SLOT_SHIFT == bits);
+            let code = u32::try_from(code).expect("at most 255 thresholds");
+            *slot = code << 24 | within.map_or(1 << SLOT_SHIFT, |next| next & LOW_BITS);
         }
         Self { slots }
     }
@@ -187,10 +199,31 @@ impl SrgbU8Encoder {
         } else {
             TABLE_FROM
         };
-        let slot = self.slots[((light.to_bits() >> SLOT_SHIFT) - FIRST_SLOT) as usize];
-        slot.code + u8::from(light >= slot.threshold)
+        let bits = light.to_bits();
+        let slot = self.slots[((bits >> SLOT_SHIFT) - FIRST_SLOT) as usize];
+        let [.., code] = slot.to_le_bytes();
+        code + u8::from(bits & LOW_BITS >= slot & THRESHOLD_BITS)
+    }
+
+    /// As [`encode_srgb_u8`], sixteen at once: codes in 0..=255.
+    #[inline(always)]
+    pub fn encode_packet<S: Simd>(&self, simd: S, light: f32x16<S>) -> u32x16<S> {
+        let from = f32x16::splat(simd, TABLE_FROM);
+        let held = light.simd_gt(from).select(light, from);
+        let bits: u32x16<S> = held.min(f32x16::splat(simd, TABLE_TO)).bitcast();
+        let places = (bits >> SLOT_SHIFT) - FIRST_SLOT;
+        let mut slots = [0; 16];
+        for (slot, place) in slots.iter_mut().zip(places.to_array()) {
+            *slot = self.slots[place as usize];
+        }
+        let slots = u32x16::simd_from(simd, slots);
+        let reached = (bits & LOW_BITS).simd_ge(slots & THRESHOLD_BITS);
+        (slots >> 24) + reached.select(u32x16::splat(simd, 1), u32x16::splat(simd, 0))
     }
 }
+
+/// What of a slot is the threshold.
+const THRESHOLD_BITS: u32 = (1 << 24) - 1;
 
 fn decode_f64(encoded: f64) -> f64 {
     if encoded <= LINEAR_UP_TO_ENCODED {
@@ -233,6 +266,76 @@ fn encode_unorm_u16_f64(value: f64) -> u16 {
     (value * 65535.0 + 0.5) as u16
 }
 
+/// Linear components to 8-bit codes, each to its nearest: colour by `transfer`, alpha linearly.
+///
+/// `channels`: how many lie side by side; the last of two or four is alpha. As [`encode_srgb_u8`] and
+/// [`encode_unorm_u8`] of each, sixteen at once.
+///
+/// # Panics
+/// If `out` is not as long as `linear`.
+pub fn encode_u8(transfer: Transfer, channels: usize, linear: &[f32], out: &mut [u8]) {
+    assert_eq!(linear.len(), out.len(), "a code for each component");
+    dispatch!(Level::new(), simd => match transfer {
+        Transfer::Linear => {
+            encode_packets(simd, linear, out, #[inline(always)] |value| {
+                encode_unorm_u8_packet(simd, value)
+            });
+        }
+        Transfer::Srgb => {
+            let encoder = SrgbU8Encoder::shared();
+            let mut lanes = [0u32; 16];
+            for (lane, alpha) in lanes.iter_mut().enumerate() {
+                *alpha = u32::from(is_alpha(lane % channels, channels));
+            }
+            let alpha = u32x16::simd_from(simd, lanes).simd_eq(u32x16::splat(simd, 1));
+            encode_packets(simd, linear, out, #[inline(always)] |value| {
+                let colour = encoder.encode_packet(simd, value);
+                if channels.is_multiple_of(2) {
+                    alpha.select(encode_unorm_u8_packet(simd, value), colour)
+                } else {
+                    colour
+                }
+            });
+        }
+    });
+}
+
+/// Sixteen components a time; the last packets are filled up.
+#[inline(always)]
+fn encode_packets<S: Simd>(
+    simd: S,
+    linear: &[f32],
+    out: &mut [u8],
+    encode: impl Fn(f32x16<S>) -> u32x16<S>,
+) {
+    let (linear, rest) = linear.as_chunks::<64>();
+    let (out, out_rest) = out.as_chunks_mut::<64>();
+    for (out, linear) in out.iter_mut().zip(linear) {
+        encode_64(simd, linear, out, &encode);
+    }
+    let (mut last, mut codes) = ([0.0; 64], [0; 64]);
+    last[..rest.len()].copy_from_slice(rest);
+    encode_64(simd, &last, &mut codes, &encode);
+    out_rest.copy_from_slice(&codes[..rest.len()]);
+}
+
+#[inline(always)]
+fn encode_64<S: Simd>(
+    simd: S,
+    linear: &[f32; 64],
+    out: &mut [u8; 64],
+    encode: &impl Fn(f32x16<S>) -> u32x16<S>,
+) {
+    let mut packets = [u32x16::splat(simd, 0); 4];
+    for (packet, values) in packets.iter_mut().zip(linear.as_chunks::<16>().0) {
+        *packet = encode(f32x16::simd_from(simd, *values));
+    }
+    let [a, b, c, d] = packets;
+    let low: u16x32<S> = a.relaxed_narrow(b);
+    let high: u16x32<S> = c.relaxed_narrow(d);
+    low.relaxed_narrow(high).store_slice(out);
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -241,7 +344,7 @@ mod tests {
     fn every_slot_ends_at_most_one_code_after_its_start() {
         let encoder = SrgbU8Encoder::shared();
         for pair in encoder.slots.windows(2) {
-            assert!(pair[1].code - pair[0].code <= 1, "{pair:?}");
+            assert!((pair[1] >> 24) - (pair[0] >> 24) <= 1, "{pair:?}");
         }
     }
 

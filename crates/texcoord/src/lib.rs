@@ -23,7 +23,10 @@
 //! interpolates attributes and texture coordinates ([`ScreenCoordinate`]), also from a clipped piece.
 //!
 //! # Packets
-//! [`packet`] is the same law for 16 pixels at once, each in a triangle of its own.
+//! [`packet`] is the same law for 16 pixels at once, each in a triangle of its own; [`planes`] is it for 16 in a row of
+//! one triangle.
+//!
+//! [`unrolled`] has the array loops that such code needs.
 //!
 //! # Transform
 //! [`TextureTransform`] is glTF's offset, rotation and scale, [`AffineTransform`] its form for pixels.
@@ -56,8 +59,10 @@
 pub mod packet;
 mod patch;
 mod perspective;
+pub mod planes;
 pub mod teapot;
 mod transform;
+pub mod unrolled;
 
 pub use patch::{BicubicPatch, PatchGrid};
 pub use perspective::{ScreenCoordinate, Weights, perspective_parameter, perspective_weights};

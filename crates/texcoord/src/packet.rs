@@ -23,7 +23,9 @@
 
 use core::ops::{Add, Div, Mul, Sub};
 
-use fearless_simd::{Simd, f32x16, f64x8, mask64x8, prelude::*};
+use crate::unrolled::{three, two};
+
+use fearless_simd::{Simd, f32x16, f64x8, i32x16, mask64x8, prelude::*, u32x16, u64x8};
 
 /// Pixels in a packet, on every instruction set.
 pub const LANES: usize = 16;
@@ -88,6 +90,22 @@ impl<S: Simd> F64x16<S> {
         Self([low, high])
     }
 
+    /// The exact values of 16 integers.
+    #[inline(always)]
+    #[must_use]
+    pub fn from_integers(simd: S, lanes: i32x16<S>) -> Self {
+        // 2⁵² + 2³¹ + i has i + 2³¹ in its low bits.
+        let biased: u32x16<S> = (lanes ^ i32::MIN).bitcast();
+        let (low, high) = biased.widen();
+        let exponent = u64x8::splat(simd, 0x4330_0000_0000_0000);
+        let low: f64x8<S> = (low | exponent).bitcast();
+        let high: f64x8<S> = (high | exponent).bitcast();
+        Self([
+            low - 4_503_601_774_854_144.0,
+            high - 4_503_601_774_854_144.0,
+        ])
+    }
+
     /// Each lane rounded to the nearest f32; beyond its range to infinity.
     #[inline(always)]
     #[must_use]
@@ -108,11 +126,10 @@ impl<S: Simd> F64x16<S> {
     /// Lanes that are positive finite numbers.
     #[inline(always)]
     fn is_positive_finite(self) -> [mask64x8<S>; 2] {
-        let [low, high] = self.0;
-        [
-            low.simd_gt(0.0) & low.simd_lt(f64::INFINITY),
-            high.simd_gt(0.0) & high.simd_lt(f64::INFINITY),
-        ]
+        two(
+            #[inline(always)]
+            |k| self.0[k].simd_gt(0.0) & self.0[k].simd_lt(f64::INFINITY),
+        )
     }
 }
 
@@ -171,11 +188,10 @@ pub fn perspective_weights<S: Simd>(
 ) -> PacketWeights<S> {
     // Affine barycentrics, each correctly rounded when the edges are exact.
     let area = edges[0] + edges[1] + edges[2];
-    let over_w = [
-        edges[0] / area * inv_w[0],
-        edges[1] / area * inv_w[1],
-        edges[2] / area * inv_w[2],
-    ];
+    let over_w = three(
+        #[inline(always)]
+        |i| edges[i] / area * inv_w[i],
+    );
     let sum = over_w[0] + over_w[1] + over_w[2];
     let (areas, sums) = (area.is_positive_finite(), sum.is_positive_finite());
     let defined = [areas[0] & sums[0], areas[1] & sums[1]];
@@ -183,25 +199,22 @@ pub fn perspective_weights<S: Simd>(
     // Factors of a pair term: iwᵢ·iwⱼ / (Σ eₖ·iwₖ)².
     let one = F64x16::splat(simd, 1.0);
     let (per_area, per_sum) = (one / area, one / sum);
-    let scaled = [
-        inv_w[0] * per_sum * per_area,
-        inv_w[1] * per_sum * per_area,
-        inv_w[2] * per_sum * per_area,
-    ];
+    let scaled = three(
+        #[inline(always)]
+        |i| inv_w[i] * per_sum * per_area,
+    );
     let zero = F64x16::splat(simd, 0.0);
-    let pairs = [
-        (scaled[0] * scaled[1]).or(defined, zero),
-        (scaled[1] * scaled[2]).or(defined, zero),
-        (scaled[2] * scaled[0]).or(defined, zero),
-    ];
+    let pairs = three(
+        #[inline(always)]
+        |i| (scaled[i] * scaled[(i + 1) % 3]).or(defined, zero),
+    );
 
     let third = F64x16::splat(simd, 1.0 / 3.0);
     PacketWeights {
-        weights: [
-            (over_w[0] / sum).or(defined, third),
-            (over_w[1] / sum).or(defined, third),
-            (over_w[2] / sum).or(defined, third),
-        ],
+        weights: three(
+            #[inline(always)]
+            |i| (over_w[i] / sum).or(defined, third),
+        ),
         d_dx: weight_slopes(edges, edges_dx, &pairs, defined, zero),
         d_dy: weight_slopes(edges, edges_dy, &pairs, defined, zero),
     }
@@ -216,23 +229,12 @@ fn weight_slopes<S: Simd>(
     defined: [mask64x8<S>; 2],
     zero: F64x16<S>,
 ) -> [f32x16<S>; 3] {
-    let a = wronskian(edges, slopes, 0, 1) * pairs[0];
-    let b = wronskian(edges, slopes, 1, 2) * pairs[1];
-    let c = wronskian(edges, slopes, 2, 0) * pairs[2];
-    let [a, b, c] = [
-        a.or(defined, zero),
-        b.or(defined, zero),
-        c.or(defined, zero),
-    ];
+    let [a, b, c] = three(
+        #[inline(always)]
+        |i| {
+            let j = (i + 1) % 3;
+            ((slopes[i] * edges[j] - edges[i] * slopes[j]) * pairs[i]).or(defined, zero)
+        },
+    );
     [(a - c).narrow(), (b - a).narrow(), (c - b).narrow()]
-}
-
-#[inline(always)]
-fn wronskian<S: Simd>(
-    edges: &[F64x16<S>; 3],
-    slopes: &[F64x16<S>; 3],
-    i: usize,
-    j: usize,
-) -> F64x16<S> {
-    slopes[i] * edges[j] - edges[i] * slopes[j]
 }

@@ -71,6 +71,8 @@
 //! drawn without and warned of. Images: PNG, JPEG, WebP, HDR, EXR.
 #![forbid(unsafe_code)]
 
+#[cfg(feature = "bench")]
+pub mod bench;
 pub mod finish;
 #[cfg(feature = "frontier")]
 pub mod frontier;

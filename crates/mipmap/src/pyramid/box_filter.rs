@@ -194,7 +194,8 @@ fn windows(
     }
 }
 
-fn reduce_even(method: Method, above: &[f32], below: &[f32], out: &mut [f32]) {
+/// Rows of half the length: the mean of each 2×2 block of two rows.
+pub(super) fn reduce_even(method: Method, above: &[f32], below: &[f32], out: &mut [f32]) {
     match (method.averaging, method.channels) {
         (Averaging::AlphaWeighted, 2) => weighted_quads::<2>(above, below, out),
         (Averaging::AlphaWeighted, _) => weighted_quads::<4>(above, below, out),

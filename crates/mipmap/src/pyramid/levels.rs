@@ -1,7 +1,10 @@
+use std::collections::VecDeque;
+
 use glam::UVec2;
 use sampler::{Component, Texture};
 
 use super::box_filter::{self, Arithmetic, Averaging, Method, halved};
+use super::cascade::{self, Cascade};
 use super::content::{Content, EnvironmentChart};
 use super::coverage::Cutoff;
 use super::kernel::Kernel;
@@ -30,6 +33,8 @@ pub struct Levels<'a> {
     texture: &'a Texture,
     reduction: Reduction,
     size: UVec2,
+    /// Levels made ahead, in one pass.
+    made: VecDeque<Texture>,
     /// Unrounded texels of the level made last; none before the first.
     linear: Option<Vec<f32>>,
     remaining: u32,
@@ -62,6 +67,7 @@ impl<'a> Levels<'a> {
             reduction: Reduction::new(texture, content, options)?,
             size: texture.size(),
             linear: None,
+            made: VecDeque::new(),
             remaining: asked - 1,
         })
     }
@@ -72,6 +78,17 @@ impl Iterator for Levels<'_> {
 
     fn next(&mut self) -> Option<Texture> {
         self.remaining = self.remaining.checked_sub(1)?;
+        if self.linear.is_none() {
+            let cascade = self.reduction.cascade(self.texture, self.remaining + 1);
+            if let Some(cascade) = cascade {
+                self.size = cascade.levels.last().map_or(self.size, Texture::size);
+                self.made = cascade.levels.into();
+                self.linear = Some(cascade.linear);
+            }
+        }
+        if let Some(level) = self.made.pop_front() {
+            return Some(level);
+        }
         let target = halved(self.size);
         let linear = self.linear.as_deref();
         let next = self
@@ -150,6 +167,22 @@ impl Reduction {
         })
     }
 
+    /// The first levels in one pass, of at most `wanted`; `None` where that is not worth it, or needs whole levels.
+    fn cascade(&self, texture: &Texture, wanted: u32) -> Option<Cascade> {
+        let count = cascade::levels_of_a_pass(texture.size(), wanted);
+        let by_rows = self.format.component == Component::U8
+            && self.method.chart.is_none()
+            && self.range.is_none()
+            && self.coverage.is_none();
+        (by_rows && count > 0).then(|| {
+            let rows = RowsOf {
+                reduction: self,
+                texture,
+            };
+            cascade::cascade(texture, self.method, self.options.schedule, count, &rows)
+        })
+    }
+
     /// The unrounded texels of a level of `target` texels, each side that of `size` or half as long.
     ///
     /// Made from `linear`, the unrounded texels of a level of `size`; `None` is `texture` itself.
@@ -182,12 +215,8 @@ impl Reduction {
                 }
             }
         }
-        if let Content::Roughness { channel } = self.content {
-            for texel in linear.to_mut().chunks_exact_mut(channels) {
-                // r = (r⁴)^¼; a negative lobe may have left less than nothing.
-                let value = &mut texel[usize::from(channel)];
-                *value = value.max(0.0).sqrt().sqrt();
-            }
+        if let Content::Roughness { .. } = self.content {
+            self.finish_row(linear.to_mut());
         }
         if let Some((cutoff, share)) = self.coverage {
             cutoff.keep(share, size.x as usize, self.format, linear.to_mut());
@@ -240,6 +269,39 @@ impl Reduction {
                 *value = (r * r) * (r * r);
             }
         }
+    }
+}
+
+impl Reduction {
+    /// Averages as they are stored: r⁴ as r.
+    fn finish_row(&self, row: &mut [f32]) {
+        if let Content::Roughness { channel } = self.content {
+            for texel in row.chunks_exact_mut(self.method.channels) {
+                // r = (r⁴)^¼; a negative lobe may have left less than nothing.
+                let value = &mut texel[usize::from(channel)];
+                *value = value.max(0.0).sqrt().sqrt();
+            }
+        }
+    }
+}
+
+/// The rows of a texture, for a [`cascade`].
+struct RowsOf<'a> {
+    reduction: &'a Reduction,
+    texture: &'a Texture,
+}
+
+impl cascade::Rows for RowsOf<'_> {
+    fn read(&self, j: u32, row: &mut [f32]) {
+        self.reduction.read_row(self.texture, j, row);
+    }
+
+    fn finish(&self, row: &mut [f32]) {
+        self.reduction.finish_row(row);
+    }
+
+    fn plain(&self) -> bool {
+        !matches!(self.reduction.content, Content::Roughness { .. })
     }
 }
 

@@ -6,6 +6,7 @@
 mod balance;
 mod bounds;
 mod box_filter;
+mod cascade;
 mod content;
 mod coverage;
 mod kernel;

@@ -26,6 +26,10 @@ impl Range {
         let [mut all, mut visible] = [Self::NOTHING; 2];
         for j in 0..size.y {
             read_row(j, &mut row);
+            if alpha.is_none() && channels == 4 {
+                all.include_row::<4>(&row);
+                continue;
+            }
             for texel in row.chunks_exact(channels) {
                 all.include(texel);
                 if alpha.is_some_and(|alpha| texel[alpha] > 0.0) {
@@ -51,6 +55,29 @@ impl Range {
         } else {
             value
         }
+    }
+
+    /// Texels of as many channels as one register holds.
+    fn include_row<const N: usize>(&mut self, row: &[f32]) {
+        let mut least = [f32::INFINITY; N];
+        let mut greatest = [f32::NEG_INFINITY; N];
+        for texel in row.as_chunks::<N>().0 {
+            for c in 0..N {
+                // Written so that NaN is passed over.
+                least[c] = if texel[c] < least[c] {
+                    texel[c]
+                } else {
+                    least[c]
+                };
+                greatest[c] = if texel[c] > greatest[c] {
+                    texel[c]
+                } else {
+                    greatest[c]
+                };
+            }
+        }
+        self.include(&least);
+        self.include(&greatest);
     }
 
     /// f32's min and max pass over NaN.

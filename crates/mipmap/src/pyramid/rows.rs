@@ -43,6 +43,28 @@ impl Schedule {
         }
     }
 
+    /// Calls `body` with each of `tasks`; a thread hands its `scratch` from task to task.
+    pub(super) fn for_each<T: Send, S>(
+        self,
+        tasks: Vec<T>,
+        scratch: impl Fn() -> S + Sync,
+        body: impl Fn(&mut S, T) + Sync,
+    ) {
+        match self {
+            Self::Serial => {
+                let mut scratch = scratch();
+                tasks.into_iter().for_each(|task| body(&mut scratch, task));
+            }
+            #[cfg(feature = "rayon")]
+            Self::CurrentPool => {
+                use rayon::prelude::*;
+                tasks
+                    .into_par_iter()
+                    .for_each_init(&scratch, |scratch, task| body(scratch, task));
+            }
+        }
+    }
+
     /// A texture of `format` from linear texels, each component to its nearest code.
     pub(super) fn store(self, size: UVec2, format: Format, linear: &[f32]) -> Texture {
         match self {

@@ -124,3 +124,42 @@ fn the_curve_and_its_inverse_meet() {
     assert!(srgb_to_linear(f32::NAN).is_nan());
     assert_eq!(srgb_to_linear(1.0), 1.0);
 }
+
+/// Sixteen encodings at once are sixteen encodings, on either side of every rounding threshold too.
+#[test]
+fn packets_encode_as_one_does() {
+    use fearless_simd::{Level, dispatch, f32x16, prelude::*};
+    use sampler::transfer::{SrgbU8Encoder, encode_unorm_u8_packet};
+    let near = (0..=255u8).flat_map(|code| {
+        let start = srgb_to_linear((f32::from(code) - 0.5) / 255.0);
+        let half = (f32::from(code) + 0.5) / 255.0;
+        [start, half].into_iter().flat_map(|x| {
+            (-4i32..4).map(move |k| f32::from_bits(x.to_bits().wrapping_add_signed(k)))
+        })
+    });
+    let odd = [
+        f32::NAN,
+        f32::INFINITY,
+        f32::NEG_INFINITY,
+        -0.0,
+        1e-45,
+        1.0,
+        1e30,
+    ];
+    let bits = (0..=u32::MAX).step_by(65_521).map(f32::from_bits);
+    let mut values: Vec<f32> = near.chain(odd).chain(bits).collect();
+    values.resize(values.len().next_multiple_of(16), 0.0);
+    for values in values.as_chunks::<16>().0 {
+        let (srgb, linear): ([u32; 16], [u32; 16]) = dispatch!(Level::new(), simd => {
+            let packet = f32x16::simd_from(simd, *values);
+            (
+                SrgbU8Encoder::shared().encode_packet(simd, packet).to_array(),
+                encode_unorm_u8_packet(simd, packet).to_array(),
+            )
+        });
+        for (lane, &value) in values.iter().enumerate() {
+            assert_eq!(srgb[lane], u32::from(encode_srgb_u8(value)), "{value:e}");
+            assert_eq!(linear[lane], u32::from(encode_unorm_u8(value)), "{value:e}");
+        }
+    }
+}

@@ -33,6 +33,8 @@ pub(crate) enum Command {
     Tile(TileArgs),
     /// Measure every texture filter: its speed against its error, as data, plots and one HTML page.
     Frontier(FrontierArgs),
+    /// Draw the scenes of other renderers' bench and time the frames as they do.
+    Bench(BenchArgs),
 }
 
 #[derive(Args)]
@@ -116,6 +118,38 @@ pub(crate) struct FrontierArgs {
     /// Threads that frames are drawn on; all cores if left out.
     #[arg(long, value_name = "N", value_parser = values::threads)]
     pub threads: Option<usize>,
+}
+
+#[derive(Args)]
+pub(crate) struct BenchArgs {
+    /// Scene to draw: plane, spheres, heightfield, overdraw_b2f, overdraw_f2b, fill_mag, fill_min4, fill_min3,
+    /// normalmapped, or all with the filters and textures that the others are measured with.
+    #[arg(long, value_name = "all|NAME", default_value = "all")]
+    pub scene: String,
+    /// This filter alone: nearest, bilinear, bilinear_mip, trilinear, aniso2, aniso4, aniso8 or aniso16.
+    #[arg(long, value_name = "NAME")]
+    pub filter: Option<String>,
+    /// This texture alone: checker, zone or natural.
+    #[arg(long, value_name = "NAME")]
+    pub texture: Option<String>,
+    /// Folder with natural.rgba, normal.rgba and spec.rgba: 1024x1024 texels of 4 bytes each.
+    #[arg(long, value_name = "DIR")]
+    pub textures: Option<PathBuf>,
+    /// Frames to time; the median counts.
+    #[arg(long, value_name = "N", default_value = "21", value_parser = values::frames)]
+    pub frames: usize,
+    /// Threads that frames are drawn on; all cores if left out.
+    #[arg(long, value_name = "N", value_parser = values::threads)]
+    pub threads: Option<usize>,
+    /// Print a table with the columns peer, scene, filter, texture, threads, ms_median, mpix_per_s, rmse and maxerr.
+    #[arg(long)]
+    pub csv: bool,
+    /// Folder to write each picture to, as raw RGBA8.
+    #[arg(long, value_name = "DIR")]
+    pub dump: Option<PathBuf>,
+    /// Instruction set, at most the best that the machine has. The pictures are the same on all.
+    #[arg(long, value_name = "best|avx2|sse4.2|sse2", default_value = "best", value_parser = values::simd)]
+    pub simd: fearless_simd::Level,
 }
 
 /// What decides which picture it is.

@@ -1,6 +1,7 @@
 //! The program: textured pictures of 3D scenes on a machine without a GPU.
 
 mod args;
+mod bench;
 mod frontier;
 mod inspect;
 mod progress;
@@ -22,6 +23,7 @@ fn main() -> ExitCode {
         Command::Inspect(args) => inspect::run(&args),
         Command::Tile(args) => tile::run(&args),
         Command::Frontier(args) => frontier::run(&args),
+        Command::Bench(args) => bench::run(&args),
     };
     match done {
         Ok(()) => ExitCode::SUCCESS,

@@ -1,5 +1,6 @@
 //! Values of the command line, from text.
 
+use fearless_simd::Level;
 use std::path::PathBuf;
 
 use glam::{DVec3, Vec3};
@@ -42,6 +43,29 @@ pub(crate) fn threads(text: &str) -> Result<usize, String> {
         .ok()
         .filter(|n| (1..=1024).contains(n))
         .ok_or_else(|| "write a number of threads, 1 to 1024".to_owned())
+}
+
+pub(crate) fn frames(text: &str) -> Result<usize, String> {
+    text.parse()
+        .ok()
+        .filter(|n| (1..=100_000).contains(n))
+        .ok_or_else(|| "write a number of frames, 1 to 100000".to_owned())
+}
+
+/// An instruction set, if the machine has it.
+pub(crate) fn simd(text: &str) -> Result<Level, String> {
+    let best = Level::new();
+    let level = match text {
+        "best" => Some(best),
+        #[cfg(target_arch = "x86_64")]
+        "avx2" => best.as_avx2().map(Level::Avx2),
+        #[cfg(target_arch = "x86_64")]
+        "sse4.2" => best.as_sse4_2().map(Level::Sse4_2),
+        #[cfg(target_arch = "x86_64")]
+        "sse2" => best.as_sse2().map(Level::Sse2),
+        _ => return Err("choose best, avx2, sse4.2 or sse2".to_owned()),
+    };
+    level.ok_or_else(|| format!("this machine has no {text}"))
 }
 
 pub(crate) fn tonemap(text: &str) -> Result<ToneMap, String> {

@@ -1,0 +1,155 @@
+//! Texture coordinates of 16 pixels in a row of one triangle, as quotients of planes.
+//!
+//! With Eᵢ the edge values, affine on the screen, and fᵢ the coordinate at the corners,
+//!
+//! ```text
+//!   f = f₀ + N/D      N = Σ Eᵢ·(1/wᵢ)·(fᵢ − f₀)      D = Σ Eᵢ·(1/wᵢ)      ∂f/∂x = (∂N/∂x − (N/D)·∂D/∂x) / D
+//! ```
+//!
+//! N and D are planes: a pixel costs an addition each and one division, where [`crate::packet::perspective_weights`]
+//! divides eight times. It is for packets that lie in one triangle; thin triangles, whose planes cancel, have none.
+
+use fearless_simd::{Simd, f32x16, prelude::*};
+
+use crate::packet::F64x16;
+use crate::unrolled::two;
+
+/// A function that is affine on the screen.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Plane {
+    /// Its value at the origin.
+    origin: f64,
+    /// Its change per pixel.
+    dx: f64,
+    dy: f64,
+}
+
+/// Edge values of a triangle at an origin on the screen, and their gradients per pixel.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ScreenEdges {
+    /// Eᵢ at the origin: that of the edge opposite to corner i, positive inside.
+    pub origin: [f64; 3],
+    /// ∂Eᵢ/∂x.
+    pub dx: [f64; 3],
+    /// ∂Eᵢ/∂y.
+    pub dy: [f64; 3],
+}
+
+/// (s,t) over a triangle on the screen.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CoordinatePlanes {
+    first: [f64; 2],
+    numerators: [Plane; 2],
+    denominator: Plane,
+}
+
+/// Coordinates of 16 pixels, with their screen derivatives.
+#[derive(Clone, Copy, Debug)]
+pub struct PacketCoordinates<S: Simd> {
+    /// (s,t), any range.
+    pub st: [F64x16<S>; 2],
+    /// ∂(s,t)/∂x per pixel.
+    pub dst_dx: [f32x16<S>; 2],
+    /// ∂(s,t)/∂y per pixel.
+    pub dst_dy: [f32x16<S>; 2],
+}
+
+impl CoordinatePlanes {
+    /// Planes from the edges, 1/w and (s,t) of the corners.
+    ///
+    /// All finite, 1/w > 0. Nothing is refused: what is not finite or has no area comes out as NaN or infinity.
+    #[must_use]
+    pub fn new(edges: &ScreenEdges, inv_w: [f64; 3], st: [[f64; 2]; 3]) -> Self {
+        // A power of two that brings D near 1, so that derivatives fit f32 whatever the size and the distance.
+        let size =
+            edges.origin.iter().sum::<f64>() * inv_w.iter().fold(0.0, |a, &b| f64::max(a, b));
+        let scale = power_of_two_near(size).recip();
+        let plane = |f: [f64; 3]| {
+            let sum = |e: [f64; 3]| {
+                let term = |i: usize| e[i] * (inv_w[i] * scale) * f[i];
+                term(0) + term(1) + term(2)
+            };
+            Plane {
+                origin: sum(edges.origin),
+                dx: sum(edges.dx),
+                dy: sum(edges.dy),
+            }
+        };
+        Self {
+            first: st[0],
+            numerators: [0, 1].map(|axis| plane(st.map(|at| at[axis] - st[0][axis]))),
+            denominator: plane([1.0; 3]),
+        }
+    }
+
+    /// Coordinates at 16 pixels: the first lies `x` and `y` pixels from the origin, the others to its right.
+    ///
+    /// # Accuracy
+    /// With m the largest |Eᵢ/wᵢ| at the origin over D at the pixel: (s,t) within m·2⁻⁴⁸ of the range of the corners
+    /// plus 2⁻⁵² of its size, derivatives within m·2⁻⁴⁵ of the range plus 2⁻²² of their own size and of N/D·∂D/D.
+    /// `tests/properties/planes.rs` holds them against [`crate::perspective_weights`].
+    #[inline(always)]
+    #[must_use]
+    pub fn packet<S: Simd>(&self, simd: S, x: f64, y: f64) -> PacketCoordinates<S> {
+        let lanes = F64x16::from_fn(simd, |i| i as f64);
+        let d = &self.denominator;
+        let per_d = F64x16::splat(simd, 1.0) / d.row(simd, lanes, x, y);
+        let inner = two(
+            #[inline(always)]
+            |axis| self.numerators[axis].row(simd, lanes, x, y) * per_d,
+        );
+        let (narrow, per_d) = (
+            two(
+                #[inline(always)]
+                |axis| inner[axis].narrow(),
+            ),
+            per_d.narrow(),
+        );
+        let [d_dx, d_dy] = [d.dx, d.dy].map(round);
+        PacketCoordinates {
+            st: two(
+                #[inline(always)]
+                |axis| inner[axis] + F64x16::splat(simd, self.first[axis]),
+            ),
+            dst_dx: two(
+                #[inline(always)]
+                |axis| {
+                    let n = f32x16::splat(simd, round(self.numerators[axis].dx));
+                    (n - narrow[axis] * d_dx) * per_d
+                },
+            ),
+            dst_dy: two(
+                #[inline(always)]
+                |axis| {
+                    let n = f32x16::splat(simd, round(self.numerators[axis].dy));
+                    (n - narrow[axis] * d_dy) * per_d
+                },
+            ),
+        }
+    }
+}
+
+impl Plane {
+    /// Its values at 16 pixels of a row; `lanes` counts them.
+    #[inline(always)]
+    fn row<S: Simd>(&self, simd: S, lanes: F64x16<S>, x: f64, y: f64) -> F64x16<S> {
+        let start = self.origin + y * self.dy + x * self.dx;
+        F64x16::splat(simd, start) + lanes * F64x16::splat(simd, self.dx)
+    }
+}
+
+/// The power of two at or below |x|, within the normal numbers.
+fn power_of_two_near(x: f64) -> f64 {
+    const EXPONENT: u64 = 0x7ff << 52;
+    let bits = (x.to_bits() & EXPONENT).clamp(64 << 52, 0x7c0 << 52);
+    f64::from_bits(bits)
+}
+
+#[allow(
+    clippy::cast_possible_truncation,
+    reason = "the one rounding of a plane's slope to f32"
+)]
+#[inline(always)]
+fn round(x: f64) -> f32 {
+    x as f32
+}
