@@ -243,6 +243,8 @@ fn rows_of_four_become_four_packets() {
             let wide = packet::transposed_f64(simd, |lane| {
                 f64x4::from_fn(simd, |k| (4 * lane + k) as f64)
             });
+            let back = packet::rows(narrow);
+            assert_eq!(back, std::array::from_fn(|lane| std::array::from_fn(|k| (4 * lane + k) as f32)));
             for (k, (narrow, wide)) in narrow.into_iter().zip(wide).enumerate() {
                 for lane in 0..LANES {
                     assert_eq!(narrow[lane], (4 * lane + k) as f32);

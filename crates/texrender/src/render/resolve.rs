@@ -1,22 +1,60 @@
 //! From shaded pairs to pixels.
 
+use std::ops::Range;
+
 use glam::{DVec2, UVec2, Vec4};
-use raster::Rect;
+use raster::{DepthFunction, Rect};
 
 use super::film::FilmTile;
 use super::frame::Frame;
 use super::geometry::Geometry;
-use super::pairs::{Light, Pair, Pairs};
+use super::pairs::{Pair, Pairs, Shaded};
 use super::shade::Values;
 use crate::settings::Background;
 
-/// The blended surfaces over one pixel, used again from pixel to pixel.
+/// Light and coverage, premultiplied.
+#[derive(Clone, Copy, Debug, Default)]
+struct Light {
+    lit: Vec4,
+    unlit: Vec4,
+}
+
+impl Light {
+    #[inline]
+    fn add(&mut self, front: &Shaded, share: f32) {
+        if front.unlit {
+            self.unlit += front.light * share;
+        } else {
+            self.lit += front.light * share;
+        }
+    }
+
+    /// Porter and Duff's "over", with both kinds of light behind it.
+    #[inline]
+    fn cover(&mut self, front: &Shaded) {
+        let through = 1.0 - front.light.w;
+        self.lit *= through;
+        self.unlit *= through;
+        self.add(front, 1.0);
+    }
+
+    #[inline]
+    fn of(shaded: &Shaded) -> Self {
+        let mut light = Self::default();
+        light.add(shaded, 1.0);
+        light
+    }
+}
+
+/// What resolving keeps from pixel to pixel.
 #[derive(Debug, Default)]
 pub(super) struct Layers {
-    /// Places of the pairs that show anything.
+    /// Places of the blended pairs over a pixel that show anything.
     showing: Vec<usize>,
     /// Depth and pair of the layers over one sample.
     order: Vec<(f32, usize)>,
+    /// Depth of the tile's triangles, where it was asked for.
+    depths: Vec<Option<DepthFunction>>,
 }
 
 /// Makes the pixels of a tile.
@@ -33,6 +71,8 @@ impl Resolver<'_> {
         let pixels = (self.rect.size().x * self.rect.size().y) as usize;
         film.clear(pixels, plan);
         film.shaded = pairs.all.len();
+        layers.depths.clear();
+        layers.depths.resize(pairs.owners().len(), None);
         // Both lists are sorted by pixel and met in step.
         let (mut surface, mut blended) = (0, pairs.visible);
         let run = |from: usize, end: usize, number: u32| {
@@ -43,56 +83,61 @@ impl Resolver<'_> {
             let surfaces = surface..run(surface, pairs.visible, number);
             let over = blended..run(blended, pairs.all.len(), number);
             (surface, blended) = (surfaces.end, over.end);
-            let (light, values) = self.pixel(pixel, pairs, surfaces, over, layers);
-            film.push(light);
+            let light = self.light(pixel, pairs, surfaces.clone(), over.clone(), layers);
+            film.lit.push(light.lit);
+            if let Some(unlit) = &mut film.unlit {
+                unlit.push(light.unlit);
+            }
             if !plan.settings.aovs.is_empty() {
-                film.push_aovs(&plan.settings.aovs, values.unwrap_or(Values::NOTHING));
+                film.push_aovs(&plan.settings.aovs, values(pairs, surfaces, over));
             }
         }
     }
 
-    /// The light of a pixel, and its values if they are kept. `surfaces`, `over`: its visible and blended pairs.
-    fn pixel(
+    /// The light of a pixel. `surfaces`, `over`: its visible and its blended pairs.
+    fn light(
         &self,
         pixel: UVec2,
         pairs: &Pairs,
-        surfaces: std::ops::Range<usize>,
-        over: std::ops::Range<usize>,
+        surfaces: Range<usize>,
+        over: Range<usize>,
         layers: &mut Layers,
-    ) -> (Light, Option<Values>) {
+    ) -> Light {
         let full = self.geometry.pattern.full_mask();
         let visible = &pairs.all[surfaces.clone()];
-        let shaded = &pairs.shaded[surfaces.clone()];
-        let value = |place: usize| pairs.values.get(place).copied();
+        let shaded = &pairs.shaded[surfaces];
         if let (&[Pair { mask, .. }], true) = (visible, over.is_empty())
             && mask == full
         {
             // One opaque surface over all samples, as nearly everywhere.
-            return (shaded[0].light(), value(surfaces.start));
+            return Light::of(&shaded[0]);
         }
         let covered = visible.iter().fold(0, |all, pair| all | pair.mask);
         let background = if covered == full {
-            Light::default()
+            Vec4::ZERO
         } else {
             self.background(pixel)
         };
-        let values = most(visible).and_then(|first| value(surfaces.start + first));
         if over.is_empty() {
-            let samples = full.count_ones() as f32;
+            let share = 1.0 / full.count_ones() as f32;
             let mut sum = Light::default();
             for (pair, shaded) in visible.iter().zip(shaded) {
-                sum.add(shaded.light(), pair.mask.count_ones() as f32 / samples);
+                sum.add(shaded, pair.mask.count_ones() as f32 * share);
             }
             let bare = (full & !covered).count_ones();
-            sum.add(background, bare as f32 / samples);
-            return (sum, values);
+            sum.lit += background * (bare as f32 * share);
+            return sum;
         }
 
+        // What is behind each sample.
         let mut base = [Light::default(); raster::MAX_SAMPLES];
         let base = &mut base[..full.count_ones() as usize];
-        base.fill(background);
+        base.fill(Light {
+            lit: background,
+            unlit: Vec4::ZERO,
+        });
         for (pair, shaded) in visible.iter().zip(shaded) {
-            let above = shaded.light();
+            let above = Light::of(shaded);
             for (sample, light) in base.iter_mut().enumerate() {
                 if pair.mask >> sample & 1 == 1 {
                     *light = above;
@@ -100,14 +145,9 @@ impl Resolver<'_> {
             }
         }
         layers.showing.clear();
-        let shows = |place: &usize| pairs.shaded[*place].alpha > 0.0;
+        let shows = |place: &usize| pairs.shaded[*place].light.w > 0.0;
         layers.showing.extend(over.filter(shows));
-        let sum = self.composite(pixel, base, pairs, layers);
-        let nearest = || {
-            let kept = layers.showing.iter().filter_map(|&place| value(place));
-            kept.min_by(|a, b| a.depth.total_cmp(&b.depth))
-        };
-        (sum, values.or_else(nearest))
+        self.composite(pixel, base, pairs, layers)
     }
 
     /// Lays the layers over each sample, farthest first, and averages the samples.
@@ -119,38 +159,46 @@ impl Resolver<'_> {
         layers: &mut Layers,
     ) -> Light {
         let positions = self.geometry.pattern.positions();
-        let share = 1.0 / positions.len() as f32;
-        let Layers { showing, order } = layers;
+        let Layers {
+            showing,
+            order,
+            depths,
+        } = layers;
         let mut sum = Light::default();
         for (sample, (&point, light)) in positions.iter().zip(base).enumerate() {
-            if let [single] = showing.as_slice() {
+            let covers = |place: &usize| pairs.all[*place].mask >> sample & 1 == 1;
+            let over = showing.iter().copied().filter(covers);
+            if showing.len() == 1 {
                 // Nothing to sort.
-                if pairs.all[*single].mask >> sample & 1 == 1 {
-                    light.cover(&pairs.shaded[*single]);
+                over.for_each(|place| light.cover(&pairs.shaded[place]));
+            } else {
+                order.clear();
+                order.extend(over.map(|place| {
+                    let pair = &pairs.all[place];
+                    let depth = depths[pair.triangle as usize].get_or_insert_with(|| {
+                        let t = pairs.owner(pair) as usize;
+                        self.geometry.triangles[t].depth_function()
+                    });
+                    (depth.at(pixel, point), place)
+                }));
+                // Reversed depth: the smallest is the farthest. Stable, so that of equal depths the last
+                // submitted lies on top.
+                order.sort_by(|a, b| a.0.total_cmp(&b.0));
+                for &(_, place) in order.iter() {
+                    light.cover(&pairs.shaded[place]);
                 }
-                sum.add(*light, share);
-                continue;
             }
-            order.clear();
-            let over = showing.iter().map(|&place| (&pairs.all[place], place));
-            let over = over.filter(|(pair, _)| pair.mask >> sample & 1 == 1);
-            order.extend(over.map(|(pair, place)| {
-                let triangle = &self.geometry.triangles[pairs.owner(pair) as usize];
-                (triangle.depth_at(pixel, point), place)
-            }));
-            // Reversed depth: the smallest is the farthest. Stable, so that of equal depths the last
-            // submitted lies on top.
-            order.sort_by(|a, b| a.0.total_cmp(&b.0));
-            for &(_, place) in order.iter() {
-                light.cover(&pairs.shaded[place]);
-            }
-            sum.add(*light, share);
+            sum.lit += light.lit;
+            sum.unlit += light.unlit;
         }
+        let share = 1.0 / positions.len() as f32;
+        sum.lit *= share;
+        sum.unlit *= share;
         sum
     }
 
-    /// What is behind everything in a pixel, as far as the film holds it.
-    fn background(&self, pixel: UVec2) -> Light {
+    /// Light and coverage of what is behind everything in a pixel, as far as the film holds it.
+    fn background(&self, pixel: UVec2) -> Vec4 {
         let Frame {
             plan, resources, ..
         } = &self.frame;
@@ -168,14 +216,24 @@ impl Resolver<'_> {
                 };
                 let direction = ray(0.0, 0.0);
                 let (dx, dy) = (ray(1.0, 0.0) - direction, ray(0.0, 1.0) - direction);
-                Light {
-                    lit: environment.seen(direction, dx, dy).extend(1.0),
-                    unlit: Vec4::ZERO,
-                }
+                environment.seen(direction, dx, dy).extend(1.0)
             }
-            _ => Light::default(),
+            _ => Vec4::ZERO,
         }
     }
+}
+
+/// The values that a pixel keeps: those of the first of the surfaces that cover most samples, or of the nearest
+/// blended one.
+fn values(pairs: &Pairs, surfaces: Range<usize>, over: Range<usize>) -> Values {
+    let most = most(&pairs.all[surfaces.clone()]);
+    let nearest = || {
+        let shown = over.filter(|&place| pairs.shaded[place].light.w > 0.0);
+        let depth = |place: &usize| pairs.values[*place].depth;
+        shown.min_by(|a, b| depth(a).total_cmp(&depth(b)))
+    };
+    let place = most.map(|first| surfaces.start + first).or_else(nearest);
+    place.map_or(Values::NOTHING, |place| pairs.values[place])
 }
 
 /// The first of the surfaces that cover most samples.
@@ -183,13 +241,4 @@ fn most(surfaces: &[Pair]) -> Option<usize> {
     let counts = surfaces.iter().map(|pair| pair.mask.count_ones());
     let by_count = |(i, count): &(usize, u32)| (*count, std::cmp::Reverse(*i));
     counts.enumerate().max_by_key(by_count).map(|(i, _)| i)
-}
-
-impl FilmTile {
-    fn push(&mut self, light: Light) {
-        self.lit.push(light.lit);
-        if let Some(unlit) = &mut self.unlit {
-            unlit.push(light.unlit);
-        }
-    }
 }

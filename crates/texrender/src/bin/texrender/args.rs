@@ -213,7 +213,7 @@ pub(crate) struct PictureArgs {
     #[arg(long, value_name = "N", value_parser = values::threads)]
     pub threads: Option<usize>,
     /// Instructions that packets are made of; the picture is the same with all.
-    #[arg(long, value_name = "auto|sse2|sse4.2|avx2|avx512", default_value = "auto", value_parser = values::simd)]
+    #[arg(long, value_name = "best|avx2|sse4.2|sse2", default_value = "best", value_parser = values::simd)]
     pub simd: SimdLevel,
     /// Memory that the scene, its textures and the picture may take.
     #[arg(long, value_name = "SIZE", default_value = "4GiB", value_parser = values::memory)]

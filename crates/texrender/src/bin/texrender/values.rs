@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use glam::{DVec3, Vec3};
 use texrender::mipmap::{EwaTier, Tolerance};
 use texrender::sampler::transfer::srgb_to_linear;
-use texrender::{Aov, Background, BitDepth, EnvironmentSource, FilterChoice, SimdLevel, ToneMap};
+use texrender::{Aov, Background, BitDepth, EnvironmentSource, FilterChoice, ToneMap};
 
 pub(crate) fn size(text: &str) -> Result<(u32, u32), String> {
     let parse = || {
@@ -75,24 +75,6 @@ pub(crate) fn tonemap(text: &str) -> Result<ToneMap, String> {
         "none" => Ok(ToneMap::None),
         _ => Err("choose neutral, aces or none".to_owned()),
     }
-}
-
-/// Only what the machine has: a level is the proof of that.
-pub(crate) fn simd(text: &str) -> Result<SimdLevel, String> {
-    let best = SimdLevel::new();
-    let found = match text {
-        "auto" => Some(best),
-        #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-        "sse2" => best.as_sse2().map(SimdLevel::Sse2),
-        #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-        "sse4.2" => best.as_sse4_2().map(SimdLevel::Sse4_2),
-        #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-        "avx2" => best.as_avx2().map(SimdLevel::Avx2),
-        #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-        "avx512" => best.as_avx512().map(SimdLevel::Avx512),
-        _ => return Err("choose auto, sse2, sse4.2, avx2 or avx512".to_owned()),
-    };
-    found.ok_or_else(|| format!("this machine has no {text}; auto takes the best it has"))
 }
 
 pub(crate) fn bit_depth(text: &str) -> Result<BitDepth, String> {
