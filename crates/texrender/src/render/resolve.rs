@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use glam::{DVec2, UVec2, Vec4};
+use glam::{DVec2, IVec2, UVec2, Vec4};
 use raster::{DepthFunction, Rect};
 
 use super::film::FilmTile;
@@ -29,13 +29,16 @@ impl Light {
         }
     }
 
-    /// Porter and Duff's "over", with both kinds of light behind it.
+    /// Porter and Duff's "over": a layer before both kinds of light.
     #[inline]
-    fn cover(&mut self, front: &Shaded) {
+    fn under(&self, front: &Shaded) -> Self {
         let through = 1.0 - front.light.w;
-        self.lit *= through;
-        self.unlit *= through;
-        self.add(front, 1.0);
+        let mut light = Self {
+            lit: self.lit * through,
+            unlit: self.unlit * through,
+        };
+        light.add(front, 1.0);
+        light
     }
 
     #[inline]
@@ -51,8 +54,9 @@ impl Light {
 pub(super) struct Layers {
     /// Places of the blended pairs over a pixel that show anything.
     showing: Vec<usize>,
-    /// Depth and pair of the layers over one sample.
+    /// Depth and pair of the layers over one sample, and over the one before.
     order: Vec<(f32, usize)>,
+    before: Vec<(f32, usize)>,
     /// Depth of the tile's triangles, where it was asked for.
     depths: Vec<Option<DepthFunction>>,
 }
@@ -105,7 +109,7 @@ impl Resolver<'_> {
     ) -> Light {
         let full = self.geometry.pattern.full_mask();
         let visible = &pairs.all[surfaces.clone()];
-        let shaded = &pairs.shaded[surfaces];
+        let shaded = &pairs.shaded[surfaces.clone()];
         if let (&[Pair { mask, .. }], true) = (visible, over.is_empty())
             && mask == full
         {
@@ -129,65 +133,47 @@ impl Resolver<'_> {
             return sum;
         }
 
-        // What is behind each sample.
-        let mut base = [Light::default(); raster::MAX_SAMPLES];
-        let base = &mut base[..full.count_ones() as usize];
-        base.fill(Light {
-            lit: background,
-            unlit: Vec4::ZERO,
-        });
-        for (pair, shaded) in visible.iter().zip(shaded) {
-            let above = Light::of(shaded);
-            for (sample, light) in base.iter_mut().enumerate() {
-                if pair.mask >> sample & 1 == 1 {
-                    *light = above;
-                }
-            }
-        }
         layers.showing.clear();
         let shows = |place: &usize| pairs.shaded[*place].light.w > 0.0;
         layers.showing.extend(over.filter(shows));
-        self.composite(pixel, base, pairs, layers)
+        self.composite(pixel, pairs, surfaces, background, layers)
     }
 
     /// Lays the layers over each sample, farthest first, and averages the samples.
     fn composite(
         &self,
         pixel: UVec2,
-        base: &mut [Light],
         pairs: &Pairs,
+        surfaces: Range<usize>,
+        background: Vec4,
         layers: &mut Layers,
     ) -> Light {
         let positions = self.geometry.pattern.positions();
-        let Layers {
-            showing,
-            order,
-            depths,
-        } = layers;
         let mut sum = Light::default();
-        for (sample, (&point, light)) in positions.iter().zip(base).enumerate() {
+        // The sample before: what is behind it, and what it came to.
+        let mut last = None;
+        for (sample, &point) in positions.iter().enumerate() {
             let covers = |place: &usize| pairs.all[*place].mask >> sample & 1 == 1;
-            let over = showing.iter().copied().filter(covers);
-            if showing.len() == 1 {
-                // Nothing to sort.
-                over.for_each(|place| light.cover(&pairs.shaded[place]));
-            } else {
-                order.clear();
-                order.extend(over.map(|place| {
-                    let pair = &pairs.all[place];
-                    let depth = depths[pair.triangle as usize].get_or_insert_with(|| {
-                        let t = pairs.owner(pair) as usize;
-                        self.geometry.triangles[t].depth_function()
-                    });
-                    (depth.at(pixel, point), place)
-                }));
-                // Reversed depth: the smallest is the farthest. Stable, so that of equal depths the last
-                // submitted lies on top.
-                order.sort_by(|a, b| a.0.total_cmp(&b.0));
-                for &(_, place) in order.iter() {
-                    light.cover(&pairs.shaded[place]);
+            let behind = surfaces.clone().find(covers);
+            let same_layers = self.sort_layers(pixel, point, pairs, covers, layers);
+            let light = match last {
+                // Mostly all samples of a pixel see the same.
+                Some((before, light)) if same_layers && before == behind => light,
+                _ => {
+                    let mut light = match behind {
+                        Some(place) => Light::of(&pairs.shaded[place]),
+                        None => Light {
+                            lit: background,
+                            unlit: Vec4::ZERO,
+                        },
+                    };
+                    for &(_, place) in &layers.order {
+                        light = light.under(&pairs.shaded[place]);
+                    }
+                    light
                 }
-            }
+            };
+            last = Some((behind, light));
             sum.lit += light.lit;
             sum.unlit += light.unlit;
         }
@@ -195,6 +181,45 @@ impl Resolver<'_> {
         sum.lit *= share;
         sum.unlit *= share;
         sum
+    }
+
+    /// Sorts the layers over a sample into `layers.order`, farthest first; whether they are those that were there.
+    ///
+    /// Stable, so that of equal depths the last submitted lies on top.
+    fn sort_layers(
+        &self,
+        pixel: UVec2,
+        point: IVec2,
+        pairs: &Pairs,
+        covers: impl Fn(&usize) -> bool,
+        layers: &mut Layers,
+    ) -> bool {
+        let Layers {
+            showing,
+            order,
+            before,
+            depths,
+        } = layers;
+        std::mem::swap(order, before);
+        order.clear();
+        let alone = showing.len() == 1;
+        for place in showing.iter().copied().filter(covers) {
+            let depth = if alone {
+                0.0
+            } else {
+                let pair = &pairs.all[place];
+                let of = depths[pair.triangle as usize].get_or_insert_with(|| {
+                    let t = pairs.owner(pair) as usize;
+                    self.geometry.triangles[t].depth_function()
+                });
+                of.at(pixel, point)
+            };
+            // Reversed depth: the smallest is the farthest. Few layers: insertion is the fastest.
+            let nearer = order.iter().rev().take_while(|(other, _)| *other > depth);
+            order.insert(order.len() - nearer.count(), (depth, place));
+        }
+        let same = |(a, b): (&(f32, usize), &(f32, usize))| a.1 == b.1;
+        order.len() == before.len() && order.iter().zip(before.iter()).all(same)
     }
 
     /// Light and coverage of what is behind everything in a pixel, as far as the film holds it.
