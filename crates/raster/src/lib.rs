@@ -96,7 +96,7 @@ pub use chunk::{CHUNK_TRIANGLES, Chunk, MeshPart};
 pub use error::Error;
 pub use frame::{Assembler, Frame, MAX_CHUNKS, Surface};
 pub use packet::{SurfacePacket, surface_packet};
-pub use planes::Planes;
+pub use planes::{DepthFunction, Planes};
 pub use samples::{MAX_SAMPLES, SamplePattern};
 pub use stroke::{assemble_line, assemble_point};
 pub use tile::{MAX_TILE_SIZE, Rect, TILE_SIZE, TileGrid};

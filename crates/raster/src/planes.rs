@@ -1,9 +1,11 @@
 //! A triangle as those take it that work on many points at once.
 
-use glam::{DVec3, IVec2};
+use glam::{DVec3, IVec2, UVec2};
 
 use crate::Surface;
+use crate::depth::DepthPlane;
 use crate::edge::{Edge, doubled_area};
+use crate::viewport::SUBPIXELS;
 
 /// What interpolation over a triangle needs, as plain numbers.
 #[derive(Clone, Copy, Debug)]
@@ -34,6 +36,34 @@ impl Planes {
             inv_w,
             piece: piece.copied(),
         }
+    }
+}
+
+/// Depth over a triangle: for callers that ask at many points.
+#[derive(Clone, Copy, Debug)]
+pub struct DepthFunction {
+    edge_1: Edge,
+    edge_2: Edge,
+    plane: DepthPlane,
+}
+
+impl DepthFunction {
+    pub(crate) fn new(edges: [Edge; 3], plane: DepthPlane) -> Self {
+        Self {
+            edge_1: edges[1],
+            edge_2: edges[2],
+            plane,
+        }
+    }
+
+    /// Depth at a point, z/w in 0..=1 (1 near, 0 far): what [`Triangle::depth_at`](crate::Triangle::depth_at) gives.
+    #[inline]
+    #[must_use]
+    pub fn at(&self, pixel: UVec2, point: IVec2) -> f32 {
+        let unit =
+            |pixel: u32, offset: i32| i64::from(pixel) * i64::from(SUBPIXELS) + i64::from(offset);
+        let (x, y) = (unit(pixel.x, point.x), unit(pixel.y, point.y));
+        self.plane.at(self.edge_1.at(x, y), self.edge_2.at(x, y))
     }
 }
 

@@ -41,7 +41,7 @@ pub use light::{Incident, incident};
 pub use reflectance::reflectance;
 pub use select::{at_least_zero, unit_or_zero};
 pub use surface::{Fresnel, MetallicRoughness, SpecularGlossiness, Surface};
-pub use transpose::{transposed, transposed_f64};
+pub use transpose::{rows, transposed, transposed_f64};
 pub use vector::Vec3x16;
 
 /// Lanes of a packet, on every instruction set.

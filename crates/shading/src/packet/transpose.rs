@@ -2,6 +2,8 @@
 
 use fearless_simd::{Simd, SimdBase, SimdCombine, f32x4, f32x16, f64x4, f64x8};
 
+use super::LANES;
+
 /// The four columns of sixteen rows of four.
 ///
 /// What lies together in memory is loaded together: four loads of a row each cost what sixteen of single values
@@ -21,6 +23,23 @@ pub fn transposed<S: Simd>(_simd: S, row: impl Fn(usize) -> f32x4<S>) -> [f32x16
 fn four<S: Simd>(row: &impl Fn(usize) -> f32x4<S>, first: usize) -> f32x16<S> {
     let low = row(first).combine(row(first + 1));
     low.combine(row(first + 2).combine(row(first + 3)))
+}
+
+/// Sixteen rows of the numbers in four columns: the inverse of [`transposed`].
+#[inline(always)]
+#[must_use]
+pub fn rows<S: Simd>([x, y, z, w]: [f32x16<S>; 4]) -> [[f32; 4]; LANES] {
+    let (even_0, even_1) = x.interleave(z);
+    let (odd_0, odd_1) = y.interleave(w);
+    let (first, second) = even_0.interleave(odd_0);
+    let (third, fourth) = even_1.interleave(odd_1);
+    let mut rows = [[0.0; 4]; LANES];
+    let flat = rows.as_flattened_mut();
+    first.store_slice(&mut flat[..16]);
+    second.store_slice(&mut flat[16..32]);
+    third.store_slice(&mut flat[32..48]);
+    fourth.store_slice(&mut flat[48..]);
+    rows
 }
 
 /// As [`transposed`], in f64: lanes 0..8 and 8..16 of each column.

@@ -2,9 +2,10 @@
 
 use core::ops::{Add, AddAssign, Div, Mul, Neg, Sub};
 
-use fearless_simd::{ExtractToken, Select, Simd, SimdBase, SimdFloat, f32x16, mask32x16};
+use fearless_simd::{ExtractToken, Select, Simd, SimdBase, SimdFloat, SimdFrom, f32x16, mask32x16};
 use glam::Vec3;
 
+use super::LANES;
 use super::select::greater;
 
 /// Three packets: the components of sixteen vectors, or the channels of sixteen colours.
@@ -32,6 +33,17 @@ impl<S: Simd> Vec3x16<S> {
             f32x16::splat(simd, v.x),
             f32x16::splat(simd, v.y),
             f32x16::splat(simd, v.z),
+        )
+    }
+
+    /// A vector for each lane.
+    #[inline(always)]
+    #[must_use]
+    pub fn from_lanes(simd: S, lanes: &[Vec3; LANES]) -> Self {
+        Self::new(
+            f32x16::simd_from(simd, lanes.map(|v| v.x)),
+            f32x16::simd_from(simd, lanes.map(|v| v.y)),
+            f32x16::simd_from(simd, lanes.map(|v| v.z)),
         )
     }
 

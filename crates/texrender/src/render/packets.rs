@@ -1,9 +1,9 @@
 //! From the pairs of a tile to packets, and back.
 
 use fearless_simd::Simd;
-use glam::UVec2;
+use glam::{UVec2, Vec4};
 use raster::Rect;
-use shading::packet::LANES;
+use shading::packet::{LANES, Vec3x16, rows};
 
 use super::fragments::Fragments;
 use super::frame::{Frame, FrameKernel};
@@ -144,10 +144,11 @@ fn shade_packet<S: Simd>(
             let fragments = Fragments::new(simd, frame, &kernel.layout, lanes, records, positions);
             let (color, alpha) = shade(&fragments, kernel.kernel);
             let unlit = !kernel.kernel.is_lit();
-            for (lane, &slot) in packet.slots().iter().enumerate() {
+            let Vec3x16 { x, y, z } = color * alpha;
+            let lights = rows([x, y, z, alpha]);
+            for (light, &slot) in lights.into_iter().zip(packet.slots()) {
                 out.shaded[slot as usize] = Shaded {
-                    color: color.lane(lane),
-                    alpha: alpha[lane],
+                    light: Vec4::from_array(light),
                     unlit,
                 };
             }

@@ -1,6 +1,6 @@
 //! The (pixel, surface) pairs of a tile, and the order in which they are shaded.
 
-use glam::{Vec3, Vec4};
+use glam::Vec4;
 use raster::{MAX_SAMPLES, OwnerRows, Owners, VisibilityTile};
 
 use super::shade::Values;
@@ -19,19 +19,10 @@ pub(super) struct Pair {
 /// A shaded pair.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Shaded {
-    /// Linear colour, not premultiplied.
-    pub color: Vec3,
-    /// Coverage of what it covers, 0..=1.
-    pub alpha: f32,
+    /// Linear colour times coverage, and coverage of what it covers, 0..=1.
+    pub light: Vec4,
     /// Whether the colour is shown as it is.
     pub unlit: bool,
-}
-
-/// Light and coverage of a sample, premultiplied.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Light {
-    pub lit: Vec4,
-    pub unlit: Vec4,
 }
 
 /// The pairs of a tile: those of visible surfaces pixel by pixel, then the blended ones in front of them.
@@ -275,38 +266,5 @@ impl Distinct {
 
     fn rank_of(&self, number: u32) -> u32 {
         self.ranks[number as usize]
-    }
-}
-
-impl Shaded {
-    /// Its light where it covers a sample, premultiplied.
-    pub(super) fn light(&self) -> Light {
-        let light = (self.color * self.alpha).extend(self.alpha);
-        if self.unlit {
-            Light {
-                lit: Vec4::ZERO,
-                unlit: light,
-            }
-        } else {
-            Light {
-                lit: light,
-                unlit: Vec4::ZERO,
-            }
-        }
-    }
-}
-
-impl Light {
-    pub(super) fn add(&mut self, other: Self, share: f32) {
-        self.lit += other.lit * share;
-        self.unlit += other.unlit * share;
-    }
-
-    /// Porter and Duff's "over", with both kinds of light behind it.
-    pub(super) fn cover(&mut self, front: &Shaded) {
-        let through = 1.0 - front.alpha;
-        let light = front.light();
-        self.lit = self.lit * through + light.lit;
-        self.unlit = self.unlit * through + light.unlit;
     }
 }

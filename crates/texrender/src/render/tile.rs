@@ -1,6 +1,7 @@
 //! One tile: visibility, then colour.
 
 use std::sync::atomic::{AtomicU64, Ordering};
+use std::time::Instant;
 
 use fearless_simd::{Level, dispatch};
 use raster::{Rect, SamplePattern, VisibilityTile};
@@ -10,6 +11,7 @@ use super::frame::Frame;
 use super::geometry::Geometry;
 use super::packets::{AlphaTest, Packet, shade_pairs, test_alphas};
 use super::pairs::{Pairs, Shaded};
+use super::renderer::TileTimes;
 use super::resolve::{Layers, Resolver};
 use super::shade::Values;
 use crate::plan::Plan;
@@ -21,6 +23,7 @@ use crate::scene::Scene;
 const TESTS: usize = 64;
 
 /// What a worker keeps from tile to tile.
+#[derive(Debug)]
 pub(super) struct TileScratch {
     visibility: VisibilityTile,
     tests: Vec<AlphaTest>,
@@ -48,6 +51,7 @@ impl TileScratch {
 pub(super) struct TileRenderer<'a> {
     frame: Frame<'a>,
     geometry: &'a Geometry,
+    times: &'a TileTimes,
     /// A bit for each element that owns a sample.
     visible: Vec<AtomicU64>,
 }
@@ -58,13 +62,20 @@ impl<'a> TileRenderer<'a> {
         plan: &'a Plan,
         resources: &'a Resources,
         geometry: &'a Geometry,
+        times: &'a TileTimes,
     ) -> Self {
         let words = geometry.elements.div_ceil(64);
         Self {
             frame: Frame::new(scene, plan, resources),
             geometry,
+            times,
             visible: (0..words).map(|_| AtomicU64::new(0)).collect(),
         }
+    }
+
+    /// What its tiles took so far.
+    pub(super) fn times(&self) -> &TileTimes {
+        self.times
     }
 
     /// Elements that own a sample in the tiles rendered so far.
@@ -75,16 +86,21 @@ impl<'a> TileRenderer<'a> {
             .sum()
     }
 
-    pub(super) fn render(&self, index: usize, scratch: &mut TileScratch) -> FilmTile {
+    pub(super) fn render(&self, index: usize, scratch: &mut TileScratch, film: &mut FilmTile) {
         let rect = self.geometry.grid.rect(index);
+        let start = Instant::now();
         self.resolve_visibility(index, rect, scratch);
+        let seen = Instant::now();
         self.shade(rect, scratch);
+        let shaded = Instant::now();
         let resolver = Resolver {
             frame: &self.frame,
             geometry: self.geometry,
             rect,
         };
-        resolver.film(&scratch.pairs, &mut scratch.layers)
+        resolver.resolve(&scratch.pairs, &mut scratch.layers, film);
+        self.times
+            .add(seen - start, shaded - seen, shaded.elapsed());
     }
 
     /// Resolves opaque and masked surfaces, and lists them and the blended ones in front of them.
