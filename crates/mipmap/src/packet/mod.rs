@@ -36,10 +36,10 @@ mod plan;
 
 use fearless_simd::{Simd, f32x16, u32x16};
 use sampler::Filter;
-use sampler::packet::{SheetTexels, Sums8, Sums16, SumsFloat, channels};
+use sampler::packet::{SheetTexels, Sums8, Sums16, SumsFloat, channels, codes};
 
 pub use layout::PackedPyramid;
-use lookup::{Codes, Colours, Finish};
+use lookup::{Codes, Colours};
 
 use crate::probes::ProbeWeights;
 use crate::sample::SamplerState;
@@ -85,7 +85,7 @@ pub fn sample<S: Simd>(
     state: &SamplerState,
     footprint: &PacketFootprint<S>,
 ) -> [f32x16<S>; 4] {
-    channels(filtered::<S, Colours>(simd, texture, state, footprint))
+    channels(filtered(simd, texture, state, footprint))
 }
 
 /// As [`sample`], each channel clamped to 0..=1 and rounded to the nearest 8-bit code, r in the lowest byte.
@@ -101,29 +101,39 @@ pub fn sample_codes<S: Simd>(
     {
         return codes;
     }
-    filtered::<S, Codes>(simd, texture, state, footprint)
+    if let SheetTexels::Codes8(texels) = texture.sheet().texels() {
+        return simd.vectorize(
+            #[inline(always)]
+            || lookup::filtered::<S, Sums8<S>, Codes>(simd, texture, texels, state, footprint),
+        );
+    }
+    codes(simd, filtered(simd, texture, state, footprint))
 }
 
 /// One function a kind of texel, however many callers: inlined it is 10 KiB of code each.
 #[inline(always)]
-fn filtered<S: Simd, F: Finish<S>>(
+fn filtered<S: Simd>(
     simd: S,
     texture: &PackedPyramid,
     state: &SamplerState,
     footprint: &PacketFootprint<S>,
-) -> F::Output {
+) -> [f32x16<S>; 4] {
     match texture.sheet().texels() {
         SheetTexels::Codes8(texels) => simd.vectorize(
             #[inline(always)]
-            || lookup::filtered::<S, Sums8<S>, F>(simd, texture, texels, state, footprint),
+            || lookup::filtered::<S, Sums8<S>, Colours>(simd, texture, texels, state, footprint),
         ),
         SheetTexels::Codes16(texels) => simd.vectorize(
             #[inline(always)]
-            || lookup::filtered::<S, Sums16<S>, F>(simd, texture, texels, state, footprint),
+            || lookup::filtered::<S, Sums16<S>, Colours>(simd, texture, texels, state, footprint),
         ),
         SheetTexels::Floats(texels) => simd.vectorize(
             #[inline(always)]
-            || lookup::filtered::<S, SumsFloat<S>, F>(simd, texture, texels, state, footprint),
+            || {
+                lookup::filtered::<S, SumsFloat<S>, Colours>(
+                    simd, texture, texels, state, footprint,
+                )
+            },
         ),
     }
 }
