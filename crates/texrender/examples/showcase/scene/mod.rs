@@ -17,6 +17,7 @@
 
 mod ceramic;
 mod chest;
+mod collection;
 mod garden;
 mod glb;
 mod lantern;
@@ -46,5 +47,12 @@ pub(crate) fn build() -> Vec<u8> {
     table::add(&mut document);
     still_life::add(&mut document);
     garden::add(&mut document);
+    document.finish()
+}
+
+/// A heavy scene for timing, as a binary glTF file: 196,608 triangles, 36 textures of 1024².
+pub(crate) fn build_heavy() -> Vec<u8> {
+    let mut document = Document::new();
+    collection::add(&mut document);
     document.finish()
 }
