@@ -250,18 +250,20 @@ impl VisibilityTile {
         (pixel - self.rect.min).to_array().map(|k| k as usize)
     }
 
-    /// The triangle from the tile's point of view; `None` if it covers no sample of it or nothing would show.
+    /// The triangle from the tile's point of view; `None` if it covers no sample of it.
     #[inline(always)]
-    fn setup(&self, corners: &Corners) -> Option<(Setup, DepthPlane)> {
+    fn setup(&self, corners: &Corners) -> Option<Setup> {
         let origin = self.rect.min.to_array();
         let origin = origin.map(|k| signed(k as usize) * SUBPIXELS);
-        let setup = Setup::new(&corners.positions, origin, self.size(), &self.extent)?;
-        let plane = setup.plane(corners.depth);
-        let hidden = match &self.layer {
-            Some(layer) => plane.nearest() <= layer.farthest,
-            None => false,
-        };
-        (!hidden).then_some((setup, plane))
+        Setup::new(&corners.positions, origin, self.size(), &self.extent)
+    }
+
+    /// Whether the surface that stands for the whole tile hides one no nearer than `nearest`.
+    #[inline(always)]
+    fn hides(&self, nearest: f32) -> bool {
+        self.layer
+            .as_ref()
+            .is_some_and(|layer| nearest <= layer.farthest)
     }
 
     #[inline(always)]
@@ -274,15 +276,34 @@ impl VisibilityTile {
     #[inline(always)]
     pub(crate) fn draw_corners<S: Simd>(&mut self, simd: S, owner: u32, corners: &Corners) {
         debug_assert!(owner != NOBODY, "u32::MAX stands for the background");
-        let Some((setup, plane)) = self.setup(corners) else {
+        let Some(setup) = self.setup(corners) else {
             return;
         };
+        if setup.is_small && self.layer.is_none() {
+            let positions = self.pattern.positions();
+            let buffer = &mut self.buffer;
+            if let Some(nearest) =
+                draw_small(simd, &setup, &corners.depth, positions, owner, buffer)
+            {
+                self.nearest = self.nearest.max(nearest);
+            }
+            return;
+        }
+        self.draw_large(simd, owner, &setup, setup.plane(corners.depth));
+    }
+
+    /// Draws a surface of any size.
+    #[inline(always)]
+    fn draw_large<S: Simd>(&mut self, simd: S, owner: u32, setup: &Setup, plane: DepthPlane) {
+        if self.hides(plane.nearest()) {
+            return;
+        }
         let window = &setup.window;
         if window.min == [0, 0] && window.max == self.size() {
             match setup.extent([0, 0], self.size()) {
                 Extent::Outside => return,
                 Extent::Inside => {
-                    if self.cover(owner, setup, plane) {
+                    if self.cover(owner, *setup, plane) {
                         return;
                     }
                 }
@@ -291,12 +312,7 @@ impl VisibilityTile {
         }
         self.write_layer(simd);
         self.nearest = self.nearest.max(plane.nearest());
-        let positions = self.pattern.positions();
-        if setup.is_small {
-            draw_small(simd, &setup, &plane, positions, owner, &mut self.buffer);
-        } else {
-            self.draw_blocks(simd, owner, &setup, &plane);
-        }
+        self.draw_blocks(simd, owner, setup, &plane);
     }
 
     /// Takes a surface that covers the tile as one value if it lies in front of all that is there; whether nothing is
@@ -351,11 +367,15 @@ impl VisibilityTile {
         corners: &Corners,
         mut test: impl FnMut(UVec2, u64) -> u64,
     ) {
-        let Some((setup, plane)) = self.setup(corners) else {
+        let Some(setup) = self.setup(corners) else {
             return;
         };
-        self.write_layer(simd);
+        let plane = setup.plane(corners.depth);
         let nearest = plane.nearest();
+        if self.hides(nearest) {
+            return;
+        }
+        self.write_layer(simd);
         let scan = Scan::new(simd, &setup, &plane);
         let (positions, rect) = (self.pattern.positions(), self.rect);
         let (buffer, highest) = (&mut self.buffer, &mut self.nearest);
