@@ -18,5 +18,6 @@ mod mutations;
 mod needs;
 mod output;
 mod reading;
+mod renderer;
 mod showcase;
 mod tile;

@@ -1,4 +1,4 @@
-use glam::{DVec3, IVec2, UVec2, Vec2, Vec3};
+use glam::{DVec3, IVec2, UVec2, Vec2, Vec3, Vec4};
 use mipmap::solid_angle::cube_face_solid_angles;
 
 use crate::error::Error;
@@ -11,8 +11,9 @@ use sampler::cube::{CubeFace, direction_to_cube};
 #[derive(Debug, Clone)]
 pub struct CubeMap {
     size: u32,
-    /// (size + 2)² texels a face, in the order of [`CubeFace::ALL`].
-    faces: [Vec<Vec3>; 6],
+    /// (size + 2)² texels a face, in the order of [`CubeFace::ALL`]. A fourth channel of 0 lets packets load a texel
+    /// at once.
+    texels: Vec<Vec4>,
 }
 
 impl CubeMap {
@@ -35,11 +36,7 @@ impl CubeMap {
                 });
             }
         }
-        let framed = CubeFace::ALL.map(|face| framed(size, face, &faces));
-        Ok(Self {
-            size,
-            faces: framed,
-        })
+        Ok(Self::framing(size, &faces))
     }
 
     /// A cube map whose every texel is made by `texel(face, ij)`. `size` of at least 1; 0 counts as 1.
@@ -51,9 +48,14 @@ impl CubeMap {
                 .map(|ij| texel(face, ij))
                 .collect()
         });
+        Self::framing(size, &faces)
+    }
+
+    fn framing(size: u32, faces: &[Vec<Vec3>; 6]) -> Self {
+        let texels = CubeFace::ALL.into_iter();
         Self {
             size,
-            faces: CubeFace::ALL.map(|face| framed(size, face, &faces)),
+            texels: texels.flat_map(|face| framed(size, face, faces)).collect(),
         }
     }
 
@@ -64,26 +66,23 @@ impl CubeMap {
 
     /// Bytes that the texels take, their frames included.
     pub fn byte_len(&self) -> usize {
-        self.faces
-            .iter()
-            .map(|face| size_of_val(face.as_slice()))
-            .sum()
+        size_of_val(self.texels.as_slice())
     }
 
     /// Texel `ij` of a face. Beyond the face it is the last of its row or column.
     #[inline]
     pub fn texel(&self, face: CubeFace, ij: UVec2) -> Vec3 {
         let inside = ij.min(UVec2::splat(self.size - 1)) + 1;
-        self.faces[face as usize][inside.y as usize * self.stride() + inside.x as usize]
+        self.framed_face(face)[inside.y as usize * self.stride() + inside.x as usize].truncate()
     }
 
     /// The texels of a face, row by row.
     pub fn face(&self, face: CubeFace) -> Vec<Vec3> {
         let side = self.size as usize;
-        let rows = self.faces[face as usize].chunks_exact(self.stride());
+        let rows = self.framed_face(face).chunks_exact(self.stride());
         rows.skip(1)
             .take(side)
-            .flat_map(|row| row[1..=side].iter().copied())
+            .flat_map(|row| row[1..=side].iter().map(|texel| texel.truncate()))
             .collect()
     }
 
@@ -111,10 +110,10 @@ impl CubeMap {
         let ij = [xy.x as u32, xy.y as u32].map(|k| k.min(self.size) as usize);
         let fraction = xy - Vec2::new(ij[0] as f32, ij[1] as f32);
         let first = ij[1] * self.stride() + ij[0];
-        let texels = &self.faces[face as usize][first..first + self.stride() + 2];
+        let texels = &self.framed_face(face)[first..first + self.stride() + 2];
         let row = |k: usize| texels[k] + (texels[k + 1] - texels[k]) * fraction.x;
         let top = row(0);
-        top + (row(self.stride()) - top) * fraction.y
+        (top + (row(self.stride()) - top) * fraction.y).truncate()
     }
 
     /// ∫ L dω over the sphere.
@@ -132,11 +131,20 @@ impl CubeMap {
 
     /// The same map with every channel multiplied.
     pub(crate) fn scaled(mut self, factor: Vec3) -> Self {
-        self.faces
-            .iter_mut()
-            .flatten()
-            .for_each(|texel| *texel *= factor);
+        let factor = factor.extend(1.0);
+        self.texels.iter_mut().for_each(|texel| *texel *= factor);
         self
+    }
+
+    /// All texels, face after face, each with its frame.
+    #[inline(always)]
+    pub(crate) fn framed_texels(&self) -> &[Vec4] {
+        &self.texels
+    }
+
+    fn framed_face(&self, face: CubeFace) -> &[Vec4] {
+        let length = self.stride() * self.stride();
+        &self.texels[face as usize * length..][..length]
     }
 
     fn stride(&self) -> usize {
@@ -145,7 +153,7 @@ impl CubeMap {
 }
 
 /// A face with its frame.
-fn framed(size: u32, face: CubeFace, faces: &[Vec<Vec3>; 6]) -> Vec<Vec3> {
+fn framed(size: u32, face: CubeFace, faces: &[Vec<Vec3>; 6]) -> Vec<Vec4> {
     let side = i32::try_from(size).expect("a face of this size fits in memory");
     let at = |ij: IVec2| {
         let (face, ij) = face.touching(size, ij)?;
@@ -161,6 +169,6 @@ fn framed(size: u32, face: CubeFace, faces: &[Vec<Vec3>; 6]) -> Vec<Vec3> {
     };
     (-1..=side)
         .flat_map(|j| (-1..=side).map(move |i| (i, j)))
-        .map(|(i, j)| cell(i, j))
+        .map(|(i, j)| cell(i, j).extend(0.0))
         .collect()
 }

@@ -137,6 +137,11 @@ impl IrradianceTable {
         self.cube.radiance(normal)
     }
 
+    #[inline(always)]
+    pub(crate) fn cube(&self) -> &CubeMap {
+        &self.cube
+    }
+
     /// Bytes that the texels take.
     pub fn byte_len(&self) -> usize {
         self.cube.byte_len()

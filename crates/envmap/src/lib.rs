@@ -30,6 +30,9 @@
 //! One lookup each at shading time. Everything that fills them works face by face, deterministic and single-threaded,
 //! so that the caller chooses the threads.
 //!
+//! # Sixteen directions at once: [`packet`]
+//! The same lookups on packets.
+//!
 //! # Conventions
 //! Right-handed, Y up; a map's centre column looks along −Z, +X is a quarter to its right. Radiance in, radiance or
 //! irradiance (π times as much for constant light) out. Turning the environment is the caller's: turn the direction.
@@ -61,6 +64,7 @@ mod cube_pyramid;
 mod error;
 mod irradiance;
 mod latlong;
+pub mod packet;
 mod prefilter;
 mod specular;
 mod studio;

@@ -76,6 +76,12 @@ impl SpecularTable {
         }
     }
 
+    /// Roughness and cube of each level; never empty.
+    #[inline(always)]
+    pub(crate) fn levels(&self) -> &[(f32, CubeMap)] {
+        &self.levels
+    }
+
     /// Bytes that the texels of all levels take.
     pub fn byte_len(&self) -> usize {
         self.levels.iter().map(|(_, cube)| cube.byte_len()).sum()

@@ -25,6 +25,7 @@
 //! - [`decode_normal`]: from a texel to a direction in the frame.
 //! - [`filtered_variance`], [`curvature_variance`]: how much the normals under a pixel differ, for a
 //!   highlight that must not sparkle.
+//! - [`packet`]: all of this at sixteen points at once.
 //!
 //! # Conventions
 //! As glTF: s runs right, t runs down, +Y of a normal map points up in the picture, so B runs along
@@ -41,6 +42,7 @@
 #![forbid(unsafe_code)]
 
 mod decode;
+pub mod packet;
 mod tangent_frame;
 mod variance;
 mod vertex_tangents;

@@ -4,12 +4,12 @@ use glam::Vec3;
 
 /// Share by which quantisation to 8 bits can shorten a unit normal: half a code, 1/255 of the range
 /// −1..=1, in each of three channels.
-const QUANTISATION: f32 = 0.006_8;
+pub(crate) const QUANTISATION: f32 = 0.006_8;
 
 /// Largest variance that curvature counts for: beyond it a lobe would lose its shape.
 ///
 /// Half of κ = 0.18, Tokuyoshi & Kaplanyan 2019, section 4.
-const MAX_CURVATURE_VARIANCE: f32 = 0.09;
+pub(crate) const MAX_CURVATURE_VARIANCE: f32 = 0.09;
 
 /// Variance of the slopes that a filtered normal-map direction stands for.
 ///

@@ -7,7 +7,7 @@ use crate::depth::DepthPlane;
 use crate::edge::{Edge, doubled_area};
 use crate::setup::Corners;
 use crate::viewport::SUBPIXELS;
-use crate::{SamplePattern, Surface};
+use crate::{DepthFunction, Planes, SamplePattern, Surface};
 
 /// Which side of a surface is seen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -111,15 +111,26 @@ impl Triangle {
         self.weights_from(&edges, sums, mask.count_ones().into())
     }
 
+    /// Its edge functions and 1/w, for [`texcoord::packet::perspective_weights`] and the like.
+    #[must_use]
+    pub fn planes(&self) -> Planes {
+        let positions = self.positions.map(|p| p.to_array());
+        Planes::new(positions, self.inv_w.to_array(), self.piece.as_deref())
+    }
+
+    /// Its depth, ready to be asked at many points.
+    #[must_use]
+    pub fn depth_function(&self) -> DepthFunction {
+        DepthFunction::new(self.edges(), self.depth_plane())
+    }
+
     /// Depth at a point, z/w in 0..=1 (1 near, 0 far), held within the range of the corners.
     ///
     /// # Accuracy
     /// Within 2⁻²⁴ of the exact depth of the snapped triangle.
     #[must_use]
     pub fn depth_at(&self, pixel: UVec2, point: IVec2) -> f32 {
-        let edges = self.edges();
-        let values = self.edge_values(&edges, pixel, point);
-        self.depth_plane().at(values[1], values[2])
+        self.depth_function().at(pixel, point)
     }
 
     /// Edge functions, each opposite to the corner of its index, positive inside.

@@ -31,6 +31,7 @@
 //! - [`ReflectanceTable`]: the surface's share of the environment integral (split sum), with the
 //!   energy of multiple scattering put back.
 //! - [`hammersley`], [`sample_ggx_half_vector`]: the sample sets of those integrals.
+//! - [`packet`]: the same for sixteen points at once.
 //!
 //! # Conventions
 //! Directions are unit vectors that point away from the surface. Colours are linear and
@@ -58,6 +59,7 @@ mod distribution;
 mod fresnel;
 mod light;
 mod metallic_roughness;
+pub mod packet;
 mod reflectance;
 mod sampling;
 mod specular_glossiness;

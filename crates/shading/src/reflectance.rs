@@ -12,7 +12,7 @@ use crate::hammersley;
 pub const REFLECTANCE_TABLE_MAX_ABS_ERROR: f32 = 6e-3;
 
 /// Entries along each axis.
-const SIZE: usize = 48;
+pub(crate) const SIZE: usize = 48;
 /// Samples an entry.
 const SAMPLES: u32 = 256;
 
@@ -22,7 +22,8 @@ const SAMPLES: u32 = 256;
 /// `f0·x + f90·y`, where `(x, y)` is [`ReflectanceTable::lookup`].
 #[derive(Clone, Debug)]
 pub struct ReflectanceTable {
-    entries: Vec<Vec2>,
+    /// x and y of each entry: packets load neighbours together.
+    entries: Vec<f32>,
 }
 
 impl ReflectanceTable {
@@ -32,10 +33,10 @@ impl ReflectanceTable {
         let last = (SIZE - 1) as f32;
         let samples: Vec<CapSample> = (0..SAMPLES).map(CapSample::new).collect();
         let entries = (0..SIZE * SIZE)
-            .map(|i| {
+            .flat_map(|i| {
                 let cos = ((i % SIZE) as f32 / last).max(1e-3);
                 let roughness = (i / SIZE) as f32 / last;
-                integrate(&samples, cos * cos, roughness * roughness)
+                integrate(&samples, cos * cos, roughness * roughness).to_array()
             })
             .collect();
         Self { entries }
@@ -59,10 +60,16 @@ impl ReflectanceTable {
     pub fn lookup(&self, n_dot_v: f32, roughness: f32) -> Vec2 {
         let (i, u) = split(n_dot_v.max(0.0).sqrt());
         let (j, v) = split(roughness);
-        let at = |i: usize, j: usize| self.entries[j * SIZE + i];
+        let at = |i: usize, j: usize| Vec2::from_slice(&self.entries[2 * (j * SIZE + i)..]);
         let low = at(i, j) * (1.0 - u) + at(i + 1, j) * u;
         let high = at(i, j + 1) * (1.0 - u) + at(i + 1, j + 1) * u;
         low * (1.0 - v) + high * v
+    }
+
+    /// x and y of the entries, row by row.
+    #[inline(always)]
+    pub(crate) fn entries(&self) -> &[f32] {
+        &self.entries
     }
 }
 

@@ -6,7 +6,7 @@ use crate::distribution::ggx_lobe;
 use crate::{Fresnel, Incident, MIN_ALPHA_GGX, lambert, smith_ggx_correlated};
 
 /// Cosine below which the viewer counts as grazing; keeps V finite under bent shading normals.
-const MIN_N_DOT_V: f32 = 1e-4;
+pub(crate) const MIN_N_DOT_V: f32 = 1e-4;
 
 /// What a surface does with light: a diffuse base under a microfacet layer.
 ///

@@ -95,11 +95,13 @@ pub use shading;
 pub use texcoord;
 
 pub use error::Error;
+/// Instructions that packets are made of: see [`Settings::simd`].
+pub use fearless_simd::Level as SimdLevel;
 pub use finish::{BitDepth, FinishOptions, ToneMap, save, save_aovs};
 pub use load::{LoadOptions, OutsidePaths, load};
 pub use plan::Plan;
 pub use prepare::{Resources, prepare};
-pub use render::{Film, render};
+pub use render::{Film, Renderer, render};
 pub use scene::Scene;
 pub use settings::{
     Aov, Background, DEFAULT_FOV_Y_DEGREES, EnvironmentSource, FilterChoice, Orbit, Settings,

@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use fearless_simd::Level;
 use glam::{DVec3, Vec3};
 use mipmap::{EwaTier, Tolerance};
 
@@ -32,6 +33,9 @@ pub struct Settings {
     pub max_memory: u64,
     /// In which order tiles are drawn. It never changes the picture.
     pub tile_order: TileOrder,
+    /// Instructions that packets are made of; by default the best that the machine has. They never change the
+    /// picture.
+    pub simd: Level,
 }
 
 impl Default for Settings {
@@ -48,6 +52,7 @@ impl Default for Settings {
             aovs: Vec::new(),
             max_memory: crate::DEFAULT_MAX_MEMORY,
             tile_order: TileOrder::Rows,
+            simd: Level::new(),
         }
     }
 }

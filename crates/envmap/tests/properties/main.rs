@@ -10,6 +10,7 @@ mod cube;
 mod irradiance;
 mod latlong;
 mod oracle;
+mod packet;
 mod prefilter;
 mod strategies;
 mod studio;

@@ -6,4 +6,5 @@
 
 mod frame;
 mod mesh;
+mod packet;
 mod variance;

@@ -7,5 +7,6 @@
 mod light;
 mod microfacet;
 mod oracle;
+mod packet;
 mod reflectance;
 mod strategies;

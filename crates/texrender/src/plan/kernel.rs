@@ -5,7 +5,7 @@ use mipmap::{MipFilter, SamplerState};
 use texcoord::AffineTransform;
 
 use super::filter::{MapReading, chosen_filter, chosen_reading};
-use super::texture::{PyramidNeed, TextureNeed, TextureRole};
+use super::texture::{PyramidNeed, SheetNeed, TextureNeed, TextureRole};
 use super::{Plan, TangentNeed};
 use crate::scene::{AlphaMode, Material, MaterialModel, Primitive, Scene, TextureUse, Topology};
 
@@ -136,6 +136,8 @@ pub struct Map {
     pub texcoord: usize,
     /// Applied to the coordinates; `None` for the identity.
     pub transform: Option<AffineTransform>,
+    /// Index into [`Plan::sheets`]; `None` where packets do not read by that sampler or filter.
+    pub sheet: Option<usize>,
 }
 
 impl Kernel {
@@ -330,15 +332,20 @@ impl<'a> KernelBuilder<'a> {
             PyramidNeed::None
         };
         let reason = format!("{purpose} of '{}'", self.material.name);
+        let texture = TextureNeed::list(
+            &mut self.plan.textures,
+            texture.image,
+            role,
+            pyramid,
+            reason,
+        );
+        let reading = chosen_reading(self.plan.settings.filter, &sampler);
+        let in_packets = reading == MapReading::Sampler && mipmap::packet::reads(&sampler);
         Some(Map {
-            texture: TextureNeed::list(
-                &mut self.plan.textures,
-                texture.image,
-                role,
-                pyramid,
-                reason,
-            ),
-            reading: chosen_reading(self.plan.settings.filter, &sampler),
+            texture,
+            reading,
+            sheet: in_packets
+                .then(|| SheetNeed::list(&mut self.plan.sheets, texture, sampler.address)),
             sampler,
             texcoord: source.texcoord,
             transform: (!source.transform.is_identity()).then(|| source.transform.affine()),

@@ -24,8 +24,10 @@ pub use filter::MapReading;
 pub use kernel::{
     Coverage, Curvature, Kernel, Lighting, LitKernel, Map, Reflectance, Sidedness, TangentSource,
 };
-pub use texture::{PyramidNeed, TextureNeed, TextureRole};
+pub use texture::{PyramidNeed, SheetNeed, TextureNeed, TextureRole};
 pub use view::Viewpoint;
+use visible::Culling;
+pub(crate) use visible::in_view;
 
 /// What a picture needs.
 #[derive(Clone, Debug)]
@@ -40,6 +42,8 @@ pub struct Plan {
     pub kernels: Vec<Kernel>,
     /// Images to decode, one entry an image and role.
     pub textures: Vec<TextureNeed>,
+    /// Pyramids to lay out for packets.
+    pub sheets: Vec<SheetNeed>,
     /// Tangents to generate.
     pub tangents: Vec<TangentNeed>,
     /// Light from afar, if any visible surface or the background shows it.
@@ -111,22 +115,36 @@ impl Plan {
     /// [`Error`] for settings out of range, a camera that does not exist, an image that is missing,
     /// not an image, or larger than the memory limit.
     pub fn new(scene: &Scene, settings: &Settings) -> Result<Self, Error> {
+        Self::of(scene, settings, Culling::ByView)
+    }
+
+    /// What pictures of `scene` from anywhere need: nothing is left out because the view of the settings does not
+    /// show it. For a [`Renderer`](crate::Renderer).
+    ///
+    /// # Errors
+    /// As [`Plan::new`].
+    pub fn for_any_view(scene: &Scene, settings: &Settings) -> Result<Self, Error> {
+        Self::of(scene, settings, Culling::None)
+    }
+
+    fn of(scene: &Scene, settings: &Settings, culling: Culling) -> Result<Self, Error> {
         settings.validate()?;
         environment::check_exists(&settings.environment)?;
-        let viewpoint = view::viewpoint(scene, settings)?;
+        let viewpoint = Viewpoint::of(scene, settings)?;
         let mut plan = Self {
             settings: settings.clone(),
             viewpoint,
             draws: Vec::new(),
             kernels: Vec::new(),
             textures: Vec::new(),
+            sheets: Vec::new(),
             tangents: Vec::new(),
             environment: None,
             lights: Vec::new(),
             culled_instances: 0,
             warnings: Vec::new(),
         };
-        visible::add_draws(scene, &mut plan);
+        visible::add_draws(scene, &mut plan, culling);
         texture::measure(scene, &mut plan)?;
         if plan.kernels.iter().any(Kernel::is_lit) {
             plan.lights.clone_from(&scene.lights);

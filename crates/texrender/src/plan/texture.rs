@@ -2,6 +2,7 @@
 
 use glam::UVec2;
 use rayon::prelude::*;
+use sampler::Addressing;
 
 use super::Plan;
 use crate::error::Error;
@@ -45,6 +46,27 @@ pub enum TextureRole {
     MetallicRoughness,
     /// Directions.
     Normal,
+}
+
+/// A pyramid to lay out for packets, under one pair of address modes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SheetNeed {
+    /// Index into [`Plan::textures`].
+    pub texture: usize,
+    /// What lies beyond the border.
+    pub address: Addressing<2>,
+}
+
+impl SheetNeed {
+    /// Lists a need, unless it is listed already; returns its index.
+    pub(super) fn list(needs: &mut Vec<Self>, texture: usize, address: Addressing<2>) -> usize {
+        let need = Self { texture, address };
+        let found = needs.iter().position(|listed| *listed == need);
+        found.unwrap_or_else(|| {
+            needs.push(need);
+            needs.len() - 1
+        })
+    }
 }
 
 impl TextureRole {

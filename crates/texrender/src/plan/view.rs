@@ -26,6 +26,15 @@ pub struct Viewpoint {
 }
 
 impl Viewpoint {
+    /// The viewpoint that the settings ask for.
+    ///
+    /// # Errors
+    /// [`Error`] for a camera that does not exist, or a view out of range.
+    pub fn of(scene: &Scene, settings: &Settings) -> Result<Self, Error> {
+        settings.validate()?;
+        viewpoint(scene, settings)
+    }
+
     fn new(eye: DVec3, axes: DMat3, projection: Projection, aspect: f64) -> Self {
         let inverse = axes.transpose();
         let world_to_camera = DMat4::from_cols(
@@ -69,7 +78,7 @@ impl Viewpoint {
 }
 
 /// The viewpoint that the settings ask for.
-pub(super) fn viewpoint(scene: &Scene, settings: &Settings) -> Result<Viewpoint, Error> {
+fn viewpoint(scene: &Scene, settings: &Settings) -> Result<Viewpoint, Error> {
     let aspect = f64::from(settings.width) / f64::from(settings.height);
     match &settings.view {
         View::Default => Ok(match scene.cameras.first() {

@@ -8,14 +8,24 @@ use super::kernel::{Coverage, KernelBuilder};
 use super::{Draw, Plan, Winding};
 use crate::scene::{Bounds, Scene, cofactors};
 
+/// Which instances a plan leaves out.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Culling {
+    /// Those that its view does not show.
+    ByView,
+    /// None.
+    None,
+}
+
 /// Fills `plan.draws`, and with them kernels, textures and tangents.
-pub(super) fn add_draws(scene: &Scene, plan: &mut Plan) {
+pub(super) fn add_draws(scene: &Scene, plan: &mut Plan, culling: Culling) {
     let mut kernel_of_primitive = HashMap::new();
     let bounds: Vec<Option<Bounds>> = scene.primitives.iter().map(|p| p.bounds()).collect();
     for (index, instance) in scene.instances.iter().enumerate() {
         let primitive = &scene.primitives[instance.primitive];
+        let to_clip = plan.viewpoint.world_to_clip * instance.world;
         let seen = bounds[instance.primitive]
-            .is_some_and(|bounds| in_view(&bounds, plan.viewpoint.world_to_clip * instance.world));
+            .is_some_and(|bounds| culling == Culling::None || in_view(&bounds, to_clip));
         if !seen || primitive.indices.is_empty() {
             plan.culled_instances += 1;
             continue;
@@ -66,7 +76,7 @@ fn normal_matrix(m: DMat3) -> DMat3 {
 }
 
 /// Whether a box may be seen: not all of its corners lie beyond one plane of the view.
-fn in_view(bounds: &Bounds, to_clip: DMat4) -> bool {
+pub(crate) fn in_view(bounds: &Bounds, to_clip: DMat4) -> bool {
     let corners = bounds.corners().map(|c| to_clip * c.extend(1.0));
     if corners.iter().any(|c| !c.is_finite()) {
         return false;

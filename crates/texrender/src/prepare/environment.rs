@@ -4,9 +4,11 @@ use envmap::{
     CubeFace, CubeMap, CubePyramid, IrradianceTable, LatLong, SpecularTable, cube_to_direction,
     irradiance_face, prefilter_face, resample_latlong_face, studio, studio_radiance,
 };
+use fearless_simd::{Simd, f32x16};
 use glam::{Mat3, UVec2, Vec3};
 use rayon::prelude::*;
 use sampler::{Texture, Transfer};
+use shading::packet::Vec3x16;
 
 use super::decode;
 use crate::error::Error;
@@ -35,21 +37,43 @@ pub struct Environment {
 }
 
 impl Environment {
-    /// Irradiance about a unit normal; 0 if no surface is lit by the environment.
+    /// Irradiance about sixteen unit normals; 0 if no surface is lit by the environment.
+    #[inline(always)]
     #[must_use]
-    pub fn irradiance(&self, normal: Vec3) -> Vec3 {
-        self.tables.as_ref().map_or(Vec3::ZERO, |(irradiance, _)| {
-            irradiance.irradiance(self.rotation * normal)
-        })
+    pub fn irradiance<S: Simd>(&self, simd: S, normal: Vec3x16<S>) -> Vec3x16<S> {
+        match &self.tables {
+            Some((table, _)) => envmap::packet::irradiance(simd, table, self.turned(normal)),
+            None => Vec3x16::splat(simd, Vec3::ZERO),
+        }
     }
 
-    /// Radiance about a unit direction, blurred to a perceptual roughness; 0 if no surface is lit by
+    /// Radiance about sixteen unit directions, each blurred to a perceptual roughness; 0 if no surface is lit by
     /// the environment.
+    #[inline(always)]
     #[must_use]
-    pub fn reflected(&self, direction: Vec3, roughness: f32) -> Vec3 {
-        self.tables.as_ref().map_or(Vec3::ZERO, |(_, specular)| {
-            specular.radiance(self.rotation * direction, roughness)
-        })
+    pub fn reflected<S: Simd>(
+        &self,
+        simd: S,
+        direction: Vec3x16<S>,
+        roughness: f32x16<S>,
+    ) -> Vec3x16<S> {
+        match &self.tables {
+            Some((_, table)) => {
+                envmap::packet::specular(simd, table, self.turned(direction), roughness)
+            }
+            None => Vec3x16::splat(simd, Vec3::ZERO),
+        }
+    }
+
+    /// From the world to the map.
+    #[inline(always)]
+    fn turned<S: Simd>(&self, v: Vec3x16<S>) -> Vec3x16<S> {
+        if self.rotation == Mat3::IDENTITY {
+            return v;
+        }
+        let turn = &self.rotation;
+        let row = |k: usize| v.x * turn.x_axis[k] + v.y * turn.y_axis[k] + v.z * turn.z_axis[k];
+        Vec3x16::new(row(0), row(1), row(2))
     }
 
     /// Radiance seen in a unit direction by a pixel whose neighbours look `dx` and `dy` further; 0 if

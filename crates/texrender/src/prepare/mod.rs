@@ -7,6 +7,7 @@ mod tangents;
 use std::collections::BTreeMap;
 
 use glam::Vec4;
+use mipmap::packet::PackedPyramid;
 use mipmap::pyramid::{PyramidOptions, Schedule};
 use mipmap::{Content, Pyramid};
 use rayon::prelude::*;
@@ -23,6 +24,8 @@ pub use environment::Environment;
 pub struct Resources {
     /// One for each of [`Plan::textures`].
     pub textures: Vec<Pyramid>,
+    /// One for each of [`Plan::sheets`].
+    pub sheets: Vec<PackedPyramid>,
     /// One for each of [`Plan::tangents`]: tangents a triangle corner.
     pub tangents: Vec<Vec<[Vec4; 3]>>,
     /// The environment, if the plan needs one.
@@ -86,8 +89,14 @@ pub fn prepare(scene: &Scene, plan: &Plan) -> Result<Resources, Error> {
         tangent_fallbacks: generated.iter().map(|t| t.fallbacks).sum(),
         environment_tables_built: environment.as_ref().map_or(0, Environment::tables),
     };
+    let sheets = plan
+        .sheets
+        .par_iter()
+        .map(|need| PackedPyramid::new(&textures[need.texture], &need.address))
+        .collect();
     Ok(Resources {
         textures,
+        sheets,
         tangents: generated.into_iter().map(|t| t.corners).collect(),
         environment,
         reflectance,

@@ -21,7 +21,7 @@ pub struct Film {
 }
 
 /// The pixels of one tile, row by row.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub(super) struct FilmTile {
     /// Lit light and its coverage, premultiplied.
     pub lit: Vec<Vec4>,
@@ -34,6 +34,20 @@ pub(super) struct FilmTile {
 }
 
 impl FilmTile {
+    /// Empties it, with room for `pixels`.
+    pub(super) fn clear(&mut self, pixels: usize, plan: &Plan) {
+        self.lit.clear();
+        self.lit.reserve(pixels);
+        self.aovs.clear();
+        self.unlit = plan.has_unlit().then(|| {
+            let mut unlit = self.unlit.take().unwrap_or_default();
+            unlit.clear();
+            unlit.reserve(pixels);
+            unlit
+        });
+        self.shaded = 0;
+    }
+
     /// Appends the values that a pixel keeps beside its colour.
     pub(super) fn push_aovs(&mut self, aovs: &[Aov], values: Values) {
         let Values {
@@ -69,15 +83,22 @@ pub struct FilmPixel {
 }
 
 impl Film {
-    pub(super) fn new(plan: &Plan, tiles: Vec<FilmTile>, counts: RenderCounts) -> Self {
+    /// A film without tiles.
+    pub(super) fn new(plan: &Plan) -> Self {
         Self {
             width: plan.settings.width,
             height: plan.settings.height,
-            tiles,
+            tiles: Vec::new(),
             aovs: plan.settings.aovs.clone(),
             background: plan.settings.background,
-            counts,
+            counts: RenderCounts::default(),
         }
+    }
+
+    /// Its tiles, row by row, to be drawn.
+    pub(super) fn tiles_mut(&mut self, count: usize) -> &mut [FilmTile] {
+        self.tiles.resize_with(count, FilmTile::default);
+        &mut self.tiles
     }
 
     /// Bytes that the film of a plan takes.

@@ -1,26 +1,36 @@
 //! Stage 4: Resources → [`Film`].
 //!
 //! Visibility before colour: per tile, `raster` resolves which triangle owns each sample; then each
-//! visible (pixel, triangle) is shaded once. Masked surfaces test their alpha in the visibility
+//! visible (pixel, triangle) pair is shaded once. Masked surfaces test their alpha in the visibility
 //! stage, sample by sample. Blended surfaces are laid over, per sample, in exact order of depth.
+//!
+//! ```text
+//! visibility ─▶ pairs, sorted by kernel ─▶ records of their triangles ─▶ sixteen lanes ─▶ colours ─▶ pixels
+//! ```
+//!
+//! Shading runs on packets of sixteen pairs across triangle borders. What a kernel does not use (a map, a vertex
+//! colour, positions) has no row in its records and is asked about once a packet, not once a pixel.
 
 mod film;
-mod fragment;
+mod fragments;
+mod frame;
 mod geometry;
+mod lanes;
+mod layout;
+mod packets;
+mod pairs;
+mod record;
+mod renderer;
+mod resolve;
 mod shade;
+mod textures;
 mod tile;
-
-use std::sync::atomic::{AtomicUsize, Ordering};
-
-use rayon::prelude::*;
 
 use crate::plan::Plan;
 use crate::prepare::Resources;
 use crate::scene::Scene;
-use crate::settings::TileOrder;
 pub use film::{Film, FilmPixel};
-use geometry::Geometry;
-use tile::{TileRenderer, TileScratch};
+pub use renderer::{Frame, FrameTimes, Renderer};
 
 /// What a frame cost.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
@@ -33,7 +43,7 @@ pub struct RenderCounts {
     pub pixels_shaded: usize,
 }
 
-/// Renders a frame. `scene`, `plan` and `resources` belong together.
+/// Renders a frame. `scene`, `plan` and `resources` belong together; for more than one frame keep a [`Renderer`].
 ///
 /// `progress` is called with the share of tiles done, 0..=1, from any thread. Runs on the current
 /// rayon pool; the film is the same to the bit for any number of threads and any order of tiles.
@@ -43,49 +53,7 @@ pub fn render(
     resources: &Resources,
     progress: &(dyn Fn(f32) + Sync),
 ) -> Film {
-    let geometry = Geometry::new(scene, plan);
-    let renderer = TileRenderer::new(scene, plan, resources, &geometry);
-    let count = geometry.grid.count();
-    let done = AtomicUsize::new(0);
-    let order = tile_order(plan.settings.tile_order, count);
-    let mut tiles: Vec<_> = order
-        .into_par_iter()
-        .map_init(
-            || TileScratch::new(&geometry.pattern),
-            |scratch, index| {
-                let tile = renderer.render(index, scratch);
-                let done = done.fetch_add(1, Ordering::Relaxed) + 1;
-                progress(done as f32 / count as f32);
-                (index, tile)
-            },
-        )
-        .collect();
-    tiles.sort_unstable_by_key(|(index, _)| *index);
-    let pixels_shaded = tiles.iter().map(|(_, tile)| tile.shaded).sum();
-    let counts = RenderCounts {
-        triangles_in: geometry.elements,
-        triangles_visible: renderer.visible_elements(),
-        pixels_shaded,
-    };
-    Film::new(
-        plan,
-        tiles.into_iter().map(|(_, tile)| tile).collect(),
-        counts,
-    )
-}
-
-fn tile_order(order: TileOrder, count: usize) -> Vec<usize> {
-    let mut tiles: Vec<usize> = (0..count).collect();
-    if let TileOrder::Shuffled(seed) = order {
-        // Fisher–Yates with an xorshift generator.
-        let mut state = seed | 1;
-        for i in (1..count).rev() {
-            state ^= state << 13;
-            state ^= state >> 7;
-            state ^= state << 17;
-            let j = state % (i as u64 + 1);
-            tiles.swap(i, usize::try_from(j).unwrap_or(i));
-        }
-    }
-    tiles
+    let mut renderer = Renderer::new(scene, plan, resources);
+    renderer.render_with_progress(&plan.viewpoint, progress);
+    renderer.into_film()
 }

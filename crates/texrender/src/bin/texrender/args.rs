@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::{Args, Parser, Subcommand};
 use texrender::{
     Aov, Background, BitDepth, DEFAULT_FOV_Y_DEGREES, EnvironmentSource, FilterChoice,
-    FinishOptions, LoadOptions, Orbit, OutsidePaths, Settings, ToneMap, View,
+    FinishOptions, LoadOptions, Orbit, OutsidePaths, Settings, SimdLevel, ToneMap, View,
 };
 
 use crate::values;
@@ -212,6 +212,9 @@ pub(crate) struct PictureArgs {
     /// Threads; all cores if left out.
     #[arg(long, value_name = "N", value_parser = values::threads)]
     pub threads: Option<usize>,
+    /// Instructions that packets are made of; the picture is the same with all.
+    #[arg(long, value_name = "best|avx2|sse4.2|sse2", default_value = "best", value_parser = values::simd)]
+    pub simd: SimdLevel,
     /// Memory that the scene, its textures and the picture may take.
     #[arg(long, value_name = "SIZE", default_value = "4GiB", value_parser = values::memory)]
     pub max_memory: u64,
@@ -246,6 +249,7 @@ impl PictureArgs {
             samples: self.samples,
             aovs,
             max_memory: self.max_memory,
+            simd: self.simd,
             ..Settings::default()
         }
     }

@@ -1,0 +1,269 @@
+//! From shaded pairs to pixels.
+
+use std::ops::Range;
+
+use glam::{DVec2, IVec2, UVec2, Vec4};
+use raster::{DepthFunction, Rect};
+
+use super::film::FilmTile;
+use super::frame::Frame;
+use super::geometry::Geometry;
+use super::pairs::{Pair, Pairs, Shaded};
+use super::shade::Values;
+use crate::settings::Background;
+
+/// Light and coverage, premultiplied.
+#[derive(Clone, Copy, Debug, Default)]
+struct Light {
+    lit: Vec4,
+    unlit: Vec4,
+}
+
+impl Light {
+    #[inline]
+    fn add(&mut self, front: &Shaded, share: f32) {
+        if front.unlit {
+            self.unlit += front.light * share;
+        } else {
+            self.lit += front.light * share;
+        }
+    }
+
+    /// Porter and Duff's "over": a layer before both kinds of light.
+    #[inline]
+    fn under(&self, front: &Shaded) -> Self {
+        let through = 1.0 - front.light.w;
+        let mut light = Self {
+            lit: self.lit * through,
+            unlit: self.unlit * through,
+        };
+        light.add(front, 1.0);
+        light
+    }
+
+    #[inline]
+    fn of(shaded: &Shaded) -> Self {
+        let mut light = Self::default();
+        light.add(shaded, 1.0);
+        light
+    }
+}
+
+/// What resolving keeps from pixel to pixel.
+#[derive(Debug, Default)]
+pub(super) struct Layers {
+    /// Places of the blended pairs over a pixel that show anything.
+    showing: Vec<usize>,
+    /// Depth and pair of the layers over one sample, and over the one before.
+    order: Vec<(f32, usize)>,
+    before: Vec<(f32, usize)>,
+    /// Depth of the tile's triangles, where it was asked for.
+    depths: Vec<Option<DepthFunction>>,
+}
+
+/// Makes the pixels of a tile.
+pub(super) struct Resolver<'a> {
+    pub frame: &'a Frame<'a>,
+    pub geometry: &'a Geometry,
+    pub rect: Rect,
+}
+
+impl Resolver<'_> {
+    /// The pixels, row by row, into `film`.
+    pub(super) fn resolve(&self, pairs: &Pairs, layers: &mut Layers, film: &mut FilmTile) {
+        let plan = self.frame.plan;
+        let pixels = (self.rect.size().x * self.rect.size().y) as usize;
+        film.clear(pixels, plan);
+        film.shaded = pairs.all.len();
+        layers.depths.clear();
+        layers.depths.resize(pairs.owners().len(), None);
+        // Both lists are sorted by pixel and met in step.
+        let (mut surface, mut blended) = (0, pairs.visible);
+        let run = |from: usize, end: usize, number: u32| {
+            let rest = &pairs.all[from..end];
+            from + rest.iter().take_while(|pair| pair.pixel == number).count()
+        };
+        for (number, pixel) in (0u32..).zip(self.rect.pixels()) {
+            let surfaces = surface..run(surface, pairs.visible, number);
+            let over = blended..run(blended, pairs.all.len(), number);
+            (surface, blended) = (surfaces.end, over.end);
+            let light = self.light(pixel, pairs, surfaces.clone(), over.clone(), layers);
+            film.lit.push(light.lit);
+            if let Some(unlit) = &mut film.unlit {
+                unlit.push(light.unlit);
+            }
+            if !plan.settings.aovs.is_empty() {
+                film.push_aovs(&plan.settings.aovs, values(pairs, surfaces, over));
+            }
+        }
+    }
+
+    /// The light of a pixel. `surfaces`, `over`: its visible and its blended pairs.
+    fn light(
+        &self,
+        pixel: UVec2,
+        pairs: &Pairs,
+        surfaces: Range<usize>,
+        over: Range<usize>,
+        layers: &mut Layers,
+    ) -> Light {
+        let full = self.geometry.pattern.full_mask();
+        let visible = &pairs.all[surfaces.clone()];
+        let shaded = &pairs.shaded[surfaces.clone()];
+        if let (&[Pair { mask, .. }], true) = (visible, over.is_empty())
+            && mask == full
+        {
+            // One opaque surface over all samples, as nearly everywhere.
+            return Light::of(&shaded[0]);
+        }
+        let covered = visible.iter().fold(0, |all, pair| all | pair.mask);
+        let background = if covered == full {
+            Vec4::ZERO
+        } else {
+            self.background(pixel)
+        };
+        if over.is_empty() {
+            let share = 1.0 / full.count_ones() as f32;
+            let mut sum = Light::default();
+            for (pair, shaded) in visible.iter().zip(shaded) {
+                sum.add(shaded, pair.mask.count_ones() as f32 * share);
+            }
+            let bare = (full & !covered).count_ones();
+            sum.lit += background * (bare as f32 * share);
+            return sum;
+        }
+
+        layers.showing.clear();
+        let shows = |place: &usize| pairs.shaded[*place].light.w > 0.0;
+        layers.showing.extend(over.filter(shows));
+        self.composite(pixel, pairs, surfaces, background, layers)
+    }
+
+    /// Lays the layers over each sample, farthest first, and averages the samples.
+    fn composite(
+        &self,
+        pixel: UVec2,
+        pairs: &Pairs,
+        surfaces: Range<usize>,
+        background: Vec4,
+        layers: &mut Layers,
+    ) -> Light {
+        let positions = self.geometry.pattern.positions();
+        let mut sum = Light::default();
+        // The sample before: what is behind it, and what it came to.
+        let mut last = None;
+        for (sample, &point) in positions.iter().enumerate() {
+            let covers = |place: &usize| pairs.all[*place].mask >> sample & 1 == 1;
+            let behind = surfaces.clone().find(covers);
+            let same_layers = self.sort_layers(pixel, point, pairs, covers, layers);
+            let light = match last {
+                // Mostly all samples of a pixel see the same.
+                Some((before, light)) if same_layers && before == behind => light,
+                _ => {
+                    let mut light = match behind {
+                        Some(place) => Light::of(&pairs.shaded[place]),
+                        None => Light {
+                            lit: background,
+                            unlit: Vec4::ZERO,
+                        },
+                    };
+                    for &(_, place) in &layers.order {
+                        light = light.under(&pairs.shaded[place]);
+                    }
+                    light
+                }
+            };
+            last = Some((behind, light));
+            sum.lit += light.lit;
+            sum.unlit += light.unlit;
+        }
+        let share = 1.0 / positions.len() as f32;
+        sum.lit *= share;
+        sum.unlit *= share;
+        sum
+    }
+
+    /// Sorts the layers over a sample into `layers.order`, farthest first; whether they are those that were there.
+    ///
+    /// Stable, so that of equal depths the last submitted lies on top.
+    fn sort_layers(
+        &self,
+        pixel: UVec2,
+        point: IVec2,
+        pairs: &Pairs,
+        covers: impl Fn(&usize) -> bool,
+        layers: &mut Layers,
+    ) -> bool {
+        let Layers {
+            showing,
+            order,
+            before,
+            depths,
+        } = layers;
+        std::mem::swap(order, before);
+        order.clear();
+        let alone = showing.len() == 1;
+        for place in showing.iter().copied().filter(covers) {
+            let depth = if alone {
+                0.0
+            } else {
+                let pair = &pairs.all[place];
+                let of = depths[pair.triangle as usize].get_or_insert_with(|| {
+                    let t = pairs.owner(pair) as usize;
+                    self.geometry.triangles[t].depth_function()
+                });
+                of.at(pixel, point)
+            };
+            // Reversed depth: the smallest is the farthest. Few layers: insertion is the fastest.
+            let nearer = order.iter().rev().take_while(|(other, _)| *other > depth);
+            order.insert(order.len() - nearer.count(), (depth, place));
+        }
+        let same = |(a, b): (&(f32, usize), &(f32, usize))| a.1 == b.1;
+        order.len() == before.len() && order.iter().zip(before.iter()).all(same)
+    }
+
+    /// Light and coverage of what is behind everything in a pixel, as far as the film holds it.
+    fn background(&self, pixel: UVec2) -> Vec4 {
+        let Frame {
+            plan, resources, ..
+        } = &self.frame;
+        match (plan.settings.background, resources.environment.as_ref()) {
+            (Background::Environment, Some(environment)) => {
+                let size = DVec2::new(
+                    f64::from(plan.settings.width),
+                    f64::from(plan.settings.height),
+                );
+                let aspect = size.x / size.y;
+                let ray = |x: f64, y: f64| {
+                    let at = (pixel.as_dvec2() + DVec2::new(0.5 + x, 0.5 + y)) / size;
+                    let ndc = DVec2::new(2.0 * at.x - 1.0, 1.0 - 2.0 * at.y);
+                    plan.viewpoint.ray(ndc, aspect).normalize().as_vec3()
+                };
+                let direction = ray(0.0, 0.0);
+                let (dx, dy) = (ray(1.0, 0.0) - direction, ray(0.0, 1.0) - direction);
+                environment.seen(direction, dx, dy).extend(1.0)
+            }
+            _ => Vec4::ZERO,
+        }
+    }
+}
+
+/// The values that a pixel keeps: those of the first of the surfaces that cover most samples, or of the nearest
+/// blended one.
+fn values(pairs: &Pairs, surfaces: Range<usize>, over: Range<usize>) -> Values {
+    let most = most(&pairs.all[surfaces.clone()]);
+    let nearest = || {
+        let shown = over.filter(|&place| pairs.shaded[place].light.w > 0.0);
+        let depth = |place: &usize| pairs.values[*place].depth;
+        shown.min_by(|a, b| depth(a).total_cmp(&depth(b)))
+    };
+    let place = most.map(|first| surfaces.start + first).or_else(nearest);
+    place.map_or(Values::NOTHING, |place| pairs.values[place])
+}
+
+/// The first of the surfaces that cover most samples.
+fn most(surfaces: &[Pair]) -> Option<usize> {
+    let counts = surfaces.iter().map(|pair| pair.mask.count_ones());
+    let by_count = |(i, count): &(usize, u32)| (*count, std::cmp::Reverse(*i));
+    counts.enumerate().max_by_key(by_count).map(|(i, _)| i)
+}
