@@ -7,6 +7,7 @@
 mod animation;
 mod assets;
 mod bad_input;
+mod bench;
 mod determinism;
 mod filtering;
 mod frontier;

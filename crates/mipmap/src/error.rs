@@ -45,6 +45,23 @@ pub enum Error {
         /// The size of level 0.
         size: UVec2,
     },
+    /// A level given is not half as large as the one before, rounded down, or not of its format.
+    #[error(
+        "level {level} of {}×{} texels, {channels} channels; a level has {}×{} and {expected_channels}, in the format of level 0",
+        .size.x, .size.y, .expected.x, .expected.y
+    )]
+    LevelShape {
+        /// Which level.
+        level: u32,
+        /// Its size.
+        size: UVec2,
+        /// Its channels.
+        channels: u8,
+        /// The size that it should have.
+        expected: UVec2,
+        /// The channels that it should have.
+        expected_channels: u8,
+    },
     /// Environments are reduced by the box alone, whose solid-angle weights are exact.
     #[error("environment levels by {kernel:?}; only Kernel::Box keeps their energy")]
     EnvironmentKernel {

@@ -19,6 +19,9 @@ pub const CHUNK_TRIANGLES: usize = 4096;
 /// An item that is a piece of a clipped triangle has this bit.
 pub(crate) const PIECE: u32 = 1 << 15;
 
+// A triangle is cut into seven pieces at most; those of a chunk have numbers below the bit.
+const _: () = assert!(CHUNK_TRIANGLES * 7 < 1 << 15);
+
 /// A whole triangle on the screen: who its corners are.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Whole {

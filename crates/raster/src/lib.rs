@@ -35,6 +35,12 @@
 //! snap it to the grid and append [`Triangle`]s; [`Assembly`] says what became of it. A cut is computed from the
 //! inside to the outside end of its edge, so that neighbours agree to the bit.
 //!
+//! # Frames
+//! [`Frame`] is the same for whole meshes, sixteen vertices, triangles and pixels at a time, in memory that is used
+//! again: [`project`] puts vertices on the screen, an [`Assembler`] fills a [`Chunk`] from each [`MeshPart`],
+//! [`Frame::draw_tile`] draws what a tile needs. The caller spreads each step over his threads.
+//! [`VisibilityTile::owners`] and [`surface_packet`] serve those that shade sixteen pixels at once.
+//!
 //! # Coverage
 //! A sample is covered where E ≥ 0 for all three edges, or E > 0 where the edge is neither a left nor a top edge.
 //! Edges are exact in i64: every sample of a mesh has one owner. [`SamplePattern`] says where samples lie.
@@ -83,6 +89,7 @@ mod planes;
 mod samples;
 mod scan;
 mod setup;
+mod sieve;
 mod stroke;
 mod tile;
 mod triangle;

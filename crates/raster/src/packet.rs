@@ -2,7 +2,7 @@
 
 use fearless_simd::{Simd, i32x16, prelude::*};
 use glam::{DVec3, UVec2};
-use texcoord::packet::{F64x16, LANES, PacketWeights, perspective_weights};
+use texcoord::packet::{F64x16, LANES, PacketWeights, quick_weights};
 use texcoord::planes::ScreenEdges;
 use texcoord::unrolled::three;
 
@@ -18,12 +18,43 @@ pub struct SurfacePacket<S: Simd> {
     pub vertices: [[u32; 3]; LANES],
 }
 
+/// Corners of 16 triangles, corner by corner and lane by lane.
+struct Gathered {
+    xy: [[[i32; 2]; LANES]; 3],
+    inv_w: [[f64; LANES]; 3],
+    vertices: [[u32; 3]; LANES],
+    /// Lanes whose triangle is a piece of one.
+    cut: u32,
+}
+
+impl Gathered {
+    #[inline(always)]
+    fn new(frame: &Frame, owners: &[u32; LANES]) -> Self {
+        let mut all = Self {
+            xy: [[[0; 2]; LANES]; 3],
+            inv_w: [[0.0; LANES]; 3],
+            vertices: [[0; 3]; LANES],
+            cut: 0,
+        };
+        for (lane, &owner) in owners.iter().enumerate() {
+            let surface = frame.surface(owner);
+            for k in 0..3 {
+                all.xy[k][lane] = surface.positions[k];
+                all.inv_w[k][lane] = surface.inv_w[k];
+            }
+            all.vertices[lane] = surface.vertices;
+            all.cut |= u32::from(surface.piece.is_some()) << lane;
+        }
+        all
+    }
+}
+
 /// Weights at the centres of 16 pixels of a row, the first of them `first`, in the triangle that each lane names.
 ///
 /// A pixel whose centre is outside of its triangle gets weights that extrapolate.
 ///
 /// # Accuracy
-/// As [`texcoord::packet::perspective_weights`] on exact edge values.
+/// As [`texcoord::packet::quick_weights`] on exact edge values.
 /// # Panics
 /// If an owner is not one that the frame gave.
 #[inline(always)]
@@ -33,32 +64,30 @@ pub fn surface_packet<S: Simd>(
     owners: &[u32; LANES],
     first: UVec2,
 ) -> SurfacePacket<S> {
-    let mut x = [[0i32; LANES]; 3];
-    let mut y = [[0i32; LANES]; 3];
-    let mut inv_w = [[0.0f64; LANES]; 3];
-    let mut vertices = [[0u32; 3]; LANES];
-    let mut cut = 0u32;
-    for (lane, &owner) in owners.iter().enumerate() {
-        let surface = frame.surface(owner);
-        for k in 0..3 {
-            x[k][lane] = surface.positions[k][0];
-            y[k][lane] = surface.positions[k][1];
-            inv_w[k][lane] = surface.inv_w[k];
-        }
-        vertices[lane] = surface.vertices;
-        cut |= u32::from(surface.piece.is_some()) << lane;
-    }
+    let Gathered {
+        xy,
+        inv_w,
+        vertices,
+        cut,
+    } = Gathered::new(frame, owners);
 
     // Corners from each pixel's centre: edges are cross products of two, exact in f64.
     let [left, top] = [first.x, first.y].map(|k| k.cast_signed() * SUBPIXELS + SUBPIXELS / 2);
-    let columns = i32x16::from_fn(simd, |i| lane_units(i)) + left;
+    let columns = i32x16::from_fn(simd, lane_units) + left;
+    let places = three(
+        #[inline(always)]
+        |k| {
+            let (low, high) = xy[k].as_flattened().split_at(LANES);
+            i32x16::from_slice(simd, low).deinterleave(i32x16::from_slice(simd, high))
+        },
+    );
     let px = three(
         #[inline(always)]
-        |k| F64x16::from_integers(simd, i32x16::from_slice(simd, &x[k]) - columns),
+        |k| F64x16::from_integers(simd, places[k].0 - columns),
     );
     let py = three(
         #[inline(always)]
-        |k| F64x16::from_integers(simd, i32x16::from_slice(simd, &y[k]) - top),
+        |k| F64x16::from_integers(simd, places[k].1 - top),
     );
     let inv_w = three(
         #[inline(always)]
@@ -74,7 +103,7 @@ pub fn surface_packet<S: Simd>(
     let unit = F64x16::splat(simd, f64::from(SUBPIXELS));
     let turn = sign(simd, edges[0] + edges[1] + edges[2]);
     let (step, zero) = (turn * unit, F64x16::splat(simd, 0.0));
-    let weights = perspective_weights(
+    let weights = quick_weights(
         simd,
         // Adding zero leaves no negative one.
         &three(

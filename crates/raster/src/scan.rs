@@ -16,7 +16,7 @@ use crate::setup::{Extent, SMALL_WINDOW, Setup, Window};
 use crate::viewport::SUBPIXELS;
 
 /// Pixels of a block.
-const BLOCK: [i32; 2] = [LANES as i32, BLOCK_ROWS as i32];
+const BLOCK: [i32; 2] = [signed(LANES), signed(BLOCK_ROWS)];
 
 /// What the rows of all blocks share.
 #[derive(Clone, Copy, Debug)]
@@ -72,7 +72,7 @@ impl ScanBlock {
 impl<'a, S: Simd> Scan<'a, S> {
     #[inline(always)]
     pub(crate) fn new(simd: S, setup: &'a Setup, plane: &'a DepthPlane) -> Self {
-        let lanes = i32x16::from_fn(simd, |i| i as i32);
+        let lanes = i32x16::from_fn(simd, signed);
         let units = F64x16::from_fn(simd, |i| i as f64 * f64::from(SUBPIXELS));
         Self {
             simd,
@@ -177,16 +177,18 @@ impl<'a, S: Simd> Scan<'a, S> {
     }
 }
 
-/// Draws a small triangle: each sample is one packet of 4×4 pixels.
+/// Draws a small triangle: each sample is one packet of 4×4 pixels. No sample that was written is nearer than what
+/// comes back; `None` if none was covered.
 #[inline(always)]
 pub(crate) fn draw_small<S: Simd>(
     simd: S,
     setup: &Setup,
-    plane: &DepthPlane,
+    depth: &[f64; 3],
     positions: &[IVec2],
     owner: u32,
     buffer: &mut SampleBuffer,
-) {
+) -> Option<f32> {
+    let mut plane = None;
     // The window begins where the triangle does, or as much earlier as keeps it in the buffer.
     let left = setup.window.min[0].min(signed(buffer.stride()) - SMALL_WINDOW);
     let top = setup.window.min[1].min(signed(buffer.rows()) - SMALL_WINDOW);
@@ -211,11 +213,16 @@ pub(crate) fn draw_small<S: Simd>(
         );
         let inside = a & b & c;
         if inside.any_true() {
+            let plane = plane.get_or_insert_with(
+                #[inline(always)]
+                || setup.plane(*depth),
+            );
             let depth = plane.packet(simd, F64x16::widen(values[1]), F64x16::widen(values[2]));
             let place = buffer.place(index(left), index(top), sample);
             buffer.write_window(simd, place, inside, owner, depth);
         }
     }
+    plane.map(|plane: DepthPlane| plane.nearest())
 }
 
 /// Whole pixels below a number of units; edges that cross a block fit.
@@ -235,13 +242,13 @@ pub(crate) fn index(coordinate: i32) -> usize {
     coordinate as usize
 }
 
-/// A side of a tile as a coordinate.
+/// A side of a tile, or a lane, as a coordinate.
 #[allow(
     clippy::cast_possible_truncation,
     clippy::cast_possible_wrap,
     reason = "tiles have at most 32,768 pixels a side"
 )]
 #[inline(always)]
-pub(crate) fn signed(side: usize) -> i32 {
+pub(crate) const fn signed(side: usize) -> i32 {
     side as i32
 }

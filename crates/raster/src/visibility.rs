@@ -7,7 +7,7 @@ use texcoord::packet::LANES;
 use crate::buffer::{NOBODY, SampleBuffer};
 use crate::depth::DepthPlane;
 use crate::layer::Layer;
-use crate::samples::{MAX_SAMPLES, SampleExtent};
+use crate::samples::SampleExtent;
 use crate::scan::{Scan, ScanBlock, draw_small, index, signed};
 use crate::setup::{Corners, Extent, Setup};
 use crate::tile::Rect;
@@ -39,14 +39,14 @@ use crate::{SamplePattern, Triangle};
 #[derive(Clone, Debug)]
 pub struct VisibilityTile {
     level: Level,
-    pattern: SamplePattern,
+    pub(crate) pattern: SamplePattern,
     extent: SampleExtent,
-    rect: Rect,
+    pub(crate) rect: Rect,
     /// Stands for the whole tile while it is there; then the buffer holds nothing.
     layer: Option<Layer>,
     /// No sample is stored with a greater depth.
-    nearest: f32,
-    buffer: SampleBuffer,
+    pub(crate) nearest: f32,
+    pub(crate) buffer: SampleBuffer,
 }
 
 /// Who owns the samples of a tile, for readers that take many at once.
@@ -78,12 +78,6 @@ impl<'a> OwnerRows<'a> {
     pub fn row(&self, y: usize, sample: usize) -> &'a [u32] {
         self.buffer.owner_row(y, sample)
     }
-}
-
-/// Covered samples of 16 pixels of a row and their depths, sample by sample.
-struct PacketRow {
-    masks: [u64; MAX_SAMPLES],
-    depths: [[f32; LANES]; MAX_SAMPLES],
 }
 
 impl VisibilityTile {
@@ -250,18 +244,20 @@ impl VisibilityTile {
         (pixel - self.rect.min).to_array().map(|k| k as usize)
     }
 
-    /// The triangle from the tile's point of view; `None` if it covers no sample of it or nothing would show.
+    /// The triangle from the tile's point of view; `None` if it covers no sample of it.
     #[inline(always)]
-    fn setup(&self, corners: &Corners) -> Option<(Setup, DepthPlane)> {
+    pub(crate) fn setup(&self, corners: &Corners) -> Option<Setup> {
         let origin = self.rect.min.to_array();
         let origin = origin.map(|k| signed(k as usize) * SUBPIXELS);
-        let setup = Setup::new(&corners.positions, origin, self.size(), &self.extent)?;
-        let plane = setup.plane(corners.depth);
-        let hidden = match &self.layer {
-            Some(layer) => plane.nearest() <= layer.farthest,
-            None => false,
-        };
-        (!hidden).then_some((setup, plane))
+        Setup::new(&corners.positions, origin, self.size(), &self.extent)
+    }
+
+    /// Whether the surface that stands for the whole tile hides one no nearer than `nearest`.
+    #[inline(always)]
+    pub(crate) fn hides(&self, nearest: f32) -> bool {
+        self.layer
+            .as_ref()
+            .is_some_and(|layer| nearest <= layer.farthest)
     }
 
     #[inline(always)]
@@ -274,15 +270,34 @@ impl VisibilityTile {
     #[inline(always)]
     pub(crate) fn draw_corners<S: Simd>(&mut self, simd: S, owner: u32, corners: &Corners) {
         debug_assert!(owner != NOBODY, "u32::MAX stands for the background");
-        let Some((setup, plane)) = self.setup(corners) else {
+        let Some(setup) = self.setup(corners) else {
             return;
         };
+        if setup.is_small && self.layer.is_none() {
+            let positions = self.pattern.positions();
+            let buffer = &mut self.buffer;
+            if let Some(nearest) =
+                draw_small(simd, &setup, &corners.depth, positions, owner, buffer)
+            {
+                self.nearest = self.nearest.max(nearest);
+            }
+            return;
+        }
+        self.draw_large(simd, owner, &setup, setup.plane(corners.depth));
+    }
+
+    /// Draws a surface of any size.
+    #[inline(always)]
+    fn draw_large<S: Simd>(&mut self, simd: S, owner: u32, setup: &Setup, plane: DepthPlane) {
+        if self.hides(plane.nearest()) {
+            return;
+        }
         let window = &setup.window;
         if window.min == [0, 0] && window.max == self.size() {
             match setup.extent([0, 0], self.size()) {
                 Extent::Outside => return,
                 Extent::Inside => {
-                    if self.cover(owner, setup, plane) {
+                    if self.cover(owner, *setup, plane) {
                         return;
                     }
                 }
@@ -291,12 +306,7 @@ impl VisibilityTile {
         }
         self.write_layer(simd);
         self.nearest = self.nearest.max(plane.nearest());
-        let positions = self.pattern.positions();
-        if setup.is_small {
-            draw_small(simd, &setup, &plane, positions, owner, &mut self.buffer);
-        } else {
-            self.draw_blocks(simd, owner, &setup, &plane);
-        }
+        self.draw_blocks(simd, owner, setup, &plane);
     }
 
     /// Takes a surface that covers the tile as one value if it lies in front of all that is there; whether nothing is
@@ -315,7 +325,7 @@ impl VisibilityTile {
 
     /// Writes the surface that stands for the whole tile down, if one does.
     #[inline(always)]
-    fn write_layer<S: Simd>(&mut self, simd: S) {
+    pub(crate) fn write_layer<S: Simd>(&mut self, simd: S) {
         if let Some(layer) = self.layer.take() {
             let (positions, buffer) = (self.pattern.positions(), &mut self.buffer);
             simd.vectorize(
@@ -341,95 +351,6 @@ impl VisibilityTile {
                 buffer.touch(number, packets * LANES);
             }
         }
-    }
-
-    #[inline(always)]
-    fn draw_sieved<S: Simd>(
-        &mut self,
-        simd: S,
-        owner: u32,
-        corners: &Corners,
-        mut test: impl FnMut(UVec2, u64) -> u64,
-    ) {
-        let Some((setup, plane)) = self.setup(corners) else {
-            return;
-        };
-        self.write_layer(simd);
-        let nearest = plane.nearest();
-        let scan = Scan::new(simd, &setup, &plane);
-        let (positions, rect) = (self.pattern.positions(), self.rect);
-        let (buffer, highest) = (&mut self.buffer, &mut self.nearest);
-        let mut packet = PacketRow {
-            masks: [0; MAX_SAMPLES],
-            depths: [[0.0; LANES]; MAX_SAMPLES],
-        };
-        for place in setup.window.blocks() {
-            let number = buffer.block(index(place[0]), index(place[1]));
-            if buffer.refreshed_farthest(number) >= nearest {
-                continue;
-            }
-            let Some(block) = scan.block(place) else {
-                continue;
-            };
-            for y in block.rows[0]..block.rows[1] {
-                let union = packet.fill(simd, &scan, &block, y, positions, buffer);
-                let width = rect.size().x as usize - index(block.at[0]);
-                let mut left = union & (u64::MAX >> (64 - width.min(LANES)));
-                while left != 0 {
-                    let lane = left.trailing_zeros() as usize;
-                    left &= left - 1;
-                    let (x, mask) = (
-                        index(block.at[0]) + lane,
-                        packet.samples(lane, positions.len()),
-                    );
-                    let pixel = rect.min + UVec2::new(count32(x), count32(index(y)));
-                    let mut kept = mask & test(pixel, mask);
-                    buffer.touch(number, kept.count_ones() as usize);
-                    if kept != 0 {
-                        *highest = highest.max(nearest);
-                    }
-                    while kept != 0 {
-                        let sample = kept.trailing_zeros() as usize;
-                        kept &= kept - 1;
-                        let at = buffer.place(x, index(y), sample);
-                        buffer.set(at, owner, packet.depths[sample][lane]);
-                    }
-                }
-            }
-        }
-    }
-}
-
-impl PacketRow {
-    /// Takes the samples of a row that show; the lanes of which one does.
-    #[inline(always)]
-    fn fill<S: Simd>(
-        &mut self,
-        simd: S,
-        scan: &Scan<'_, S>,
-        block: &ScanBlock,
-        y: i32,
-        positions: &[glam::IVec2],
-        buffer: &SampleBuffer,
-    ) -> u64 {
-        let mut union = 0;
-        for (sample, &position) in positions.iter().enumerate() {
-            let edges = scan.sample_edges(block, position);
-            let row = y - block.rows[0];
-            let depth = scan.depth(&edges, row);
-            let place = buffer.place(index(block.at[0]), index(y), sample);
-            let visible = scan.covered(block, &edges, row) & buffer.behind(simd, place, depth);
-            depth.store_slice(&mut self.depths[sample]);
-            self.masks[sample] = visible.to_bitmask();
-            union |= self.masks[sample];
-        }
-        union
-    }
-
-    /// The samples of a lane that show.
-    fn samples(&self, lane: usize, count: usize) -> u64 {
-        let masks = self.masks[..count].iter().enumerate();
-        masks.fold(0, |all, (sample, mask)| all | (mask >> lane & 1) << sample)
     }
 }
 
@@ -462,9 +383,4 @@ fn draw_block<S: Simd>(
         }
     }
     packets
-}
-
-/// A column or row of a tile.
-fn count32(place: usize) -> u32 {
-    u32::try_from(place).expect("tiles have at most 32,768 pixels a side")
 }

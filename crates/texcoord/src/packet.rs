@@ -34,6 +34,9 @@ pub const LANES: usize = 16;
 /// rounding to f32.
 pub const DERIVATIVE_MAX_RELATIVE_ERROR: f64 = 1.0 / 16_777_216.0 + 1e-14;
 
+/// Largest relative difference of a weight of [`quick_weights`]: eight roundings on the one side, six on the other.
+pub const QUICK_WEIGHTS_MAX_RELATIVE_ERROR: f64 = 14.0 * f64::EPSILON / 2.0;
+
 /// Sixteen f64 lanes: 0..8 in the first half, 8..16 in the second. Arithmetic is lane by lane, never fused.
 #[derive(Clone, Copy, Debug)]
 pub struct F64x16<S: Simd>(pub [f64x8<S>; 2]);
@@ -214,6 +217,52 @@ pub fn perspective_weights<S: Simd>(
         weights: three(
             #[inline(always)]
             |i| (over_w[i] / sum).or(defined, third),
+        ),
+        d_dx: weight_slopes(edges, edges_dx, &pairs, defined, zero),
+        d_dy: weight_slopes(edges, edges_dy, &pairs, defined, zero),
+    }
+}
+
+/// [`perspective_weights`] by one division instead of eight, for those that do not need its bits.
+///
+/// Inputs, and what is returned where there is no area, are the same.
+///
+/// # Accuracy
+/// Weights within [`QUICK_WEIGHTS_MAX_RELATIVE_ERROR`] of those of [`perspective_weights`], derivatives within
+/// [`DERIVATIVE_MAX_RELATIVE_ERROR`] of the largest of a lane's three. On an edge that two triangles share their weights
+/// agree to this, not to the bit. `tests/properties/packet.rs`.
+#[inline(always)]
+#[must_use]
+pub fn quick_weights<S: Simd>(
+    simd: S,
+    edges: &[F64x16<S>; 3],
+    edges_dx: &[F64x16<S>; 3],
+    edges_dy: &[F64x16<S>; 3],
+    inv_w: &[F64x16<S>; 3],
+) -> PacketWeights<S> {
+    let area = edges[0] + edges[1] + edges[2];
+    let over_w = three(
+        #[inline(always)]
+        |i| edges[i] * inv_w[i],
+    );
+    let sum = over_w[0] + over_w[1] + over_w[2];
+    let (areas, sums) = (area.is_positive_finite(), sum.is_positive_finite());
+    let defined = [areas[0] & sums[0], areas[1] & sums[1]];
+    let per_sum = F64x16::splat(simd, 1.0) / sum;
+    let scaled = three(
+        #[inline(always)]
+        |i| inv_w[i] * per_sum,
+    );
+    let zero = F64x16::splat(simd, 0.0);
+    let pairs = three(
+        #[inline(always)]
+        |i| (scaled[i] * scaled[(i + 1) % 3]).or(defined, zero),
+    );
+    let third = F64x16::splat(simd, 1.0 / 3.0);
+    PacketWeights {
+        weights: three(
+            #[inline(always)]
+            |i| (over_w[i] * per_sum).or(defined, third),
         ),
         d_dx: weight_slopes(edges, edges_dx, &pairs, defined, zero),
         d_dy: weight_slopes(edges, edges_dy, &pairs, defined, zero),

@@ -146,6 +146,45 @@ impl Pyramid {
         }
     }
 
+    /// Levels that were made elsewhere, the finest first; as many as there are, down to 1×1 at most.
+    ///
+    /// # Errors
+    /// [`Error::NoLevels`] if there is none, [`Error::LevelShape`] if one is not half as large as that before it,
+    /// rounded down to at least 1, or differs from level 0 in channels, format or transfer.
+    /// # Examples
+    /// ```
+    /// use glam::UVec2;
+    /// use mipmap::Pyramid;
+    /// use sampler::{Texels, Texture, Transfer};
+    /// let grey = |w: u32, code: u8| {
+    ///     Texture::new(UVec2::new(w, 1), 1, Transfer::Linear, Texels::U8(vec![code; w as usize]))
+    /// };
+    /// assert_eq!(Pyramid::from_levels(vec![grey(3, 9)?, grey(1, 7)?])?.levels(), 2);
+    /// assert!(Pyramid::from_levels(vec![grey(3, 9)?, grey(2, 7)?]).is_err());
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn from_levels(levels: Vec<Texture>) -> Result<Self, Error> {
+        let first = levels.first().ok_or(Error::NoLevels)?;
+        let kind = |t: &Texture| (t.channels(), t.format(), t.transfer());
+        for (level, pair) in (1u32..).zip(levels.windows(2)) {
+            let expected = (pair[0].size() / 2).max(UVec2::ONE);
+            let ends = pair[0].size() == UVec2::ONE;
+            if ends || pair[1].size() != expected || kind(&pair[1]) != kind(first) {
+                return Err(Error::LevelShape {
+                    level,
+                    size: pair[1].size(),
+                    channels: pair[1].channels(),
+                    expected,
+                    expected_channels: first.channels(),
+                });
+            }
+        }
+        Ok(Self {
+            levels,
+            bounds: None,
+        })
+    }
+
     /// The number of levels, at least 1.
     pub fn levels(&self) -> u32 {
         u32::try_from(self.levels.len()).unwrap_or(u32::MAX)

@@ -4,8 +4,8 @@ use fearless_simd::{Level, dispatch, prelude::*};
 use glam::{DVec3, DVec4, IVec2, UVec2};
 use proptest::prelude::*;
 use raster::{
-    Assembly, Bins, CHUNK_TRIANGLES, Cull, Frame, MeshPart, SamplePattern, TileGrid, Triangle,
-    Viewport, VisibilityTile, assemble_triangle, project, surface_packet,
+    Assembly, Bins, Cull, Frame, MeshPart, SamplePattern, TileGrid, Triangle, Viewport,
+    VisibilityTile, assemble_triangle, project, surface_packet,
 };
 use texcoord::packet::{F64x16, LANES};
 
@@ -171,7 +171,10 @@ fn check_packets(
     alone: &[Triangle],
 ) {
     let rect = found.rect();
-    for first in rect.pixels().filter(|p| (p.x - rect.min.x) % 16 == 0) {
+    for first in rect
+        .pixels()
+        .filter(|p| (p.x - rect.min.x).is_multiple_of(16))
+    {
         let lanes: Vec<UVec2> = (0..16)
             .map(|i| first + UVec2::new(i, 0))
             .filter(|&p| rect.contains(p))
@@ -196,7 +199,12 @@ fn check_packets(
                 DVec3::from_array([0, 1, 2].map(|i| f64::from(axes[i][lane])))
             };
             let value = DVec3::from_array(value.map(|axis| axis[lane]));
-            assert_eq!(value, truth.value, "{pixel}");
+            let error = (value - truth.value).abs().max_element();
+            assert!(
+                error <= 64.0 * f64::EPSILON,
+                "{pixel}: {value} {}",
+                truth.value
+            );
             for (found, truth) in [(at(&dx), truth.dx), (at(&dy), truth.dy)] {
                 let error = (found - truth).abs().max_element();
                 // A piece has corners in the whole with weights up to 1: three roundings, and one more.
@@ -217,8 +225,4 @@ fn a_frame_has_room_for_so_many() {
     let mut frame = Frame::new(grid, &pattern(1), Level::new());
     assert!(frame.begin(3, raster::MAX_CHUNKS + 1).is_err());
     assert!(frame.begin(3, 1).is_ok());
-    assert!(
-        CHUNK_TRIANGLES * 7 < 1 << 15,
-        "pieces of a chunk have numbers"
-    );
 }

@@ -87,12 +87,14 @@ proptest! {
         for k in 0..n {
             corners.push([n, k, (k + 1) % n]);
         }
-        // With few spokes the fan's border cuts the target: only what is inside it is asked.
         let mesh = Mesh { points, triangles: corners };
         let counts = count(&triangles(&mesh, &[1.0]), whole(viewport()), &pattern);
-        let expected = i32::from(n >= 40);
-        for (sample, found) in counts.plain.iter() {
-            prop_assert!((expected..=1).contains(&found), "sample {:?} has {} owners", sample, found);
+        if n >= 40 {
+            prop_assert!(counts.plain.all(1));
+        }
+        // With fewer spokes the fan's border cuts the target and may leave the hub outside: fronts and backs then overlap.
+        for (sample, found) in counts.signed.iter() {
+            prop_assert!((-1..=1).contains(&found), "sample {:?} has {} owners", sample, found);
         }
     }
 }

@@ -15,8 +15,9 @@ use texcoord::packet::{F64x16, LANES};
 use texcoord::unrolled::{four, three};
 
 use super::picture::{HEIGHT, Picture, WIDTH};
-use super::scene::Scene;
+use super::scene::{Configuration, Scene};
 use super::shade::TileShader;
+use super::textures::Textures;
 use crate::error::Error;
 
 /// Side of a tile: owner and depth of its pixels fit the nearest cache.
@@ -66,11 +67,27 @@ impl Renderer {
         &self.picture
     }
 
+    /// Clears the picture and draws a configuration, whose scene is `scene`.
+    ///
+    /// # Errors
+    /// As for too large a scene: [`Error::Setting`].
+    /// # Panics
+    /// If its textures are not among those that were loaded.
+    pub fn render(
+        &mut self,
+        configuration: &Configuration,
+        scene: &Scene,
+        textures: &Textures,
+    ) -> Result<(), Error> {
+        let state = configuration.filter.state();
+        self.draw(scene, &textures.of(configuration), &state)
+    }
+
     /// Clears the picture and draws a scene.
     ///
     /// # Errors
     /// [`Error::Setting`] if it has more triangles or vertices than a frame holds.
-    pub(super) fn draw(
+    fn draw(
         &mut self,
         scene: &Scene,
         textures: &[&PackedPyramid],

@@ -7,7 +7,7 @@ use texcoord::unrolled::three;
 pub(super) type Vectors<S> = [f32x16<S>; 3];
 
 /// Direction to the lamp: (0.4, 0.8, 0.45), normalised.
-const LAMP: [f32; 3] = [0.399_500_94, 0.799_001_87, 0.449_438_55];
+const LAMP: [f32; 3] = [0.399_500_94, 0.799_001_9, 0.449_438_54];
 
 /// What of the albedo shows without the lamp, and what the lamp adds.
 const AMBIENT: f32 = 0.15;

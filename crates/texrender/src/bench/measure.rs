@@ -83,11 +83,10 @@ pub fn run(
             Some(same) if same.name == configuration.scene => scene.insert(same),
             _ => scene.insert(Scene::of(configuration)),
         };
-        let (layers, state) = (textures.of(configuration), configuration.filter.state());
         let mut times = Vec::with_capacity(effort.frames);
         for frame in 0..effort.warm_up + effort.frames.max(1) {
             let start = Instant::now();
-            renderer.draw(black_box(scene), &layers, &state)?;
+            renderer.render(configuration, black_box(scene), textures)?;
             black_box(renderer.picture());
             if frame >= effort.warm_up {
                 times.push(start.elapsed().as_secs_f64() * 1e3);

@@ -123,8 +123,9 @@ impl Filter {
 
     /// How samplers are told, repeating textures.
     pub fn state(self) -> SamplerState {
+        // The level by the footprint's true axes: nearer to the truth than the longer derivative's, and no dearer.
         let base = SamplerState {
-            lod_rule: LodRule::MaxLength,
+            lod_rule: LodRule::Exact,
             max_anisotropy: 1.0,
             ..SamplerState::default()
         };
@@ -145,7 +146,6 @@ impl Filter {
             },
             Self::Trilinear => base,
             Self::Aniso(most) => SamplerState {
-                lod_rule: LodRule::Exact,
                 max_anisotropy: f32::from(most),
                 ..base
             },

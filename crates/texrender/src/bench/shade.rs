@@ -160,7 +160,7 @@ impl TileShader<'_> {
         let [_, _, nx, ny] = mixed(&weights, &corners);
         let [nz, px, py, pz] = mixed(&weights, &self.rows(simd, 1, &surfaces));
         let (normal, position) = ([nx, ny, nz], [px, py, pz]);
-        let to_eye = self.to_eye(simd, &surfaces, position);
+        let to_eye = self.eye_direction(simd, &surfaces, position);
         let (normal, highlight) = if self.scene.shader == Shader::NormalMapped {
             let [x, y, z, _] = sample(simd, self.textures[1], self.state, &footprint);
             let [strength, ..] = sample(simd, self.textures[2], self.state, &footprint);
@@ -175,7 +175,7 @@ impl TileShader<'_> {
 
     /// From positions in the mesh to the eye.
     #[inline(always)]
-    fn to_eye<S: Simd>(
+    fn eye_direction<S: Simd>(
         &self,
         simd: S,
         surfaces: &SurfacePacket<S>,

@@ -3,9 +3,10 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
+use glam::UVec2;
+use mipmap::Pyramid;
 use mipmap::packet::PackedPyramid;
-use mipmap::{Content, Pyramid};
-use sampler::Addressing;
+use sampler::{Addressing, Texture};
 
 use super::scene::{Configuration, Scene, Shader};
 use crate::error::Error;
@@ -25,11 +26,11 @@ impl BenchTexture {
     /// # Errors
     /// [`Error::Image`] if it is too large for one.
     pub fn new(texture: &TestTexture) -> Result<Self, Error> {
-        let pyramid = Pyramid::build(texture.to_texture(), Content::Data);
-        let pyramid = pyramid.map_err(|error| Error::Image {
+        let error = |error: mipmap::Error| Error::Image {
             name: texture.name.clone(),
             detail: error.to_string(),
-        })?;
+        };
+        let pyramid = Pyramid::from_levels(levels(texture)).map_err(error)?;
         Ok(Self(PackedPyramid::new(&pyramid, &Addressing::default())))
     }
 }
@@ -59,6 +60,45 @@ impl Textures {
         let get = |name: &str| &self.0.get(name).expect("loaded with its configuration").0;
         names(configuration).into_iter().map(get).collect()
     }
+}
+
+/// The levels as the peers make them: codes (a + b + c + d + 2)/4 of the codes before, rounded down. A mean of light
+/// instead would round halves to even.
+fn levels(texture: &TestTexture) -> Vec<Texture> {
+    let mut level = texture.clone();
+    let mut levels = vec![level.to_texture()];
+    while level.size.max_element() > 1 {
+        let size = (level.size / 2).max(UVec2::ONE);
+        let code = |x: u32, y: u32| {
+            let [x, y] = [x.min(level.size.x - 1), y.min(level.size.y - 1)];
+            level.codes[(y * level.size.x + x) as usize]
+        };
+        let codes = (0..size.x * size.y).map(|k| {
+            let (x, y) = (2 * (k % size.x), 2 * (k / size.x));
+            let four = [
+                code(x, y),
+                code(x + 1, y),
+                code(x, y + 1),
+                code(x + 1, y + 1),
+            ];
+            [0, 1, 2, 3].map(|c| quarter(four.map(|code| u16::from(code[c])).iter().sum()))
+        });
+        level = TestTexture {
+            codes: codes.collect(),
+            size,
+            ..level.clone()
+        };
+        levels.push(level.to_texture());
+    }
+    levels
+}
+
+#[expect(
+    clippy::cast_possible_truncation,
+    reason = "a quarter of the sum of four codes is a code"
+)]
+fn quarter(sum: u16) -> u8 {
+    ((sum + 2) >> 2) as u8
 }
 
 fn names(configuration: &Configuration) -> Vec<&'static str> {
@@ -94,24 +134,20 @@ mod tests {
 
     #[test]
     fn levels_are_those_of_the_peers() {
-        let texture = TestTexture::computed("zone").unwrap();
-        let pyramid = Pyramid::build(texture.to_texture(), Content::Data).unwrap();
-        let mut codes: Vec<u16> = texture.codes.iter().map(|c| u16::from(c[0])).collect();
-        let mut side = 1024;
-        for level in 1..11 {
-            let at = |x: usize, y: usize| codes[y * side + x];
-            let half = side / 2;
-            let next: Vec<u16> = (0..half * half)
-                .map(|k| (2 * (k % half), 2 * (k / half)))
-                .map(|(x, y)| (at(x, y) + at(x + 1, y) + at(x, y + 1) + at(x + 1, y + 1) + 2) >> 2)
-                .collect();
-            let level = pyramid.level(level);
-            for (k, &code) in (0u32..).zip(&next) {
-                let side = level.size().x;
-                let texel = level.fetch(glam::UVec2::new(k % side, k / side));
-                assert_eq!((texel.x * 255.0).round(), f32::from(code));
-            }
-            (codes, side) = (next, half);
-        }
+        // Halves are rounded up, and each level comes from the codes of the one before.
+        let codes = [0u8, 1, 1, 0, 8, 8, 9, 9].map(|code| [code, code, code, 255]);
+        let texture = TestTexture {
+            name: "two by four".to_owned(),
+            size: UVec2::new(4, 2),
+            codes: codes.to_vec(),
+            channels: crate::frontier::Channels::Grey,
+        };
+        let made = levels(&texture);
+        let red = |level: usize, x: u32| (made[level].fetch(UVec2::new(x, 0)).x * 255.0).round();
+        // (0 + 1 + 8 + 8 + 2)/4 and (1 + 0 + 9 + 9 + 2)/4, then (4 + 5 + 4 + 5 + 2)/4.
+        assert_eq!(
+            (made.len(), red(1, 0), red(1, 1), red(2, 0)),
+            (3, 4.0, 5.0, 5.0)
+        );
     }
 }
