@@ -85,8 +85,9 @@ impl CoordinatePlanes {
     /// Coordinates at 16 pixels: the first lies `x` and `y` pixels from the origin, the others to its right.
     ///
     /// # Accuracy
-    /// With m the largest |Eᵢ/wᵢ| at the origin over D at the pixel: (s,t) within m·2⁻⁴⁸ of the range of the corners
-    /// plus 2⁻⁵² of its size, derivatives within m·2⁻⁴⁵ of the range plus 2⁻²² of their own size and of N/D·∂D/D.
+    /// For 16 pixels inside the triangle. With m the largest term of D, at the origin or between it and the pixels, over
+    /// D at the pixel, and g = |∂D/D|: (s,t) within m·2⁻⁴⁸ of the range of the corners plus 2⁻⁴⁸ of their size;
+    /// derivatives within m·2⁻⁴⁵·(1 + g) of the range plus 2⁻²¹ of their own size and of g·|f − f₀|.
     /// `tests/properties/planes.rs` holds them against [`crate::perspective_weights`].
     #[inline(always)]
     #[must_use]

@@ -2,7 +2,7 @@
 
 use fearless_simd::prelude::*;
 use fearless_simd::{Simd, f32x16, i32x16, mask32x16, u32x16};
-use sampler::packet::{ONE, Share, Sums, codes, unit};
+use sampler::packet::{ONE, Share, Sums, codes, fold, held, unit};
 use sampler::{AddressMode, Filter};
 
 use super::layout::Placed;
@@ -67,7 +67,6 @@ pub(super) fn filtered<S: Simd, A: Sums<S>, F: Finish<S>>(
         bordered: texture.modes().contains(&AddressMode::ClampToBorder),
     };
     let zero = f32x16::splat(simd, 0.0);
-    let one = f32x16::splat(simd, 1.0);
     // Beside the last level there is none; its weight is 0.
     let last = f32x16::splat(simd, (texture.levels() - 1) as f32);
     let levels = 1 + usize::from(plan.fraction.simd_gt(zero).any_true());
@@ -77,26 +76,39 @@ pub(super) fn filtered<S: Simd, A: Sums<S>, F: Finish<S>>(
         placed[1] = texture.placed(simd, (plan.fine + 1.0).min(last));
     }
     let mut sums = A::zero(simd);
-    let mut all_weights = u32x16::splat(simd, 0);
-    // A line's probes stand on either side of the middle: pair 0 before and after it, pair 1, and so on.
-    let probes = plan.line.map_or(1, |line| 2 * line.pairs);
-    for probe in 0..probes {
-        let (s, t, weight) = match &plan.line {
-            None => (footprint.s, footprint.t, one),
-            Some(line) => line.probe(simd, probe, footprint),
-        };
+    let one_units = u32x16::splat(simd, ONE);
+    let coarse = u32x16::truncate_from(plan.fraction * ONE as f32 + 0.5);
+    let (s, t) = (held(simd, footprint.s), held(simd, footprint.t));
+    let Some(line) = &plan.line else {
         let place = lookup.place(s, t);
-        let units = weight * ONE as f32;
-        let all = u32x16::truncate_from(units + 0.5);
-        let coarse = u32x16::truncate_from(units * plan.fraction + 0.5);
-        all_weights += all;
-        lookup.level(&mut sums, &placed[0], place, all - coarse);
+        lookup.level(&mut sums, &placed[0], place, one_units - coarse);
         if levels == 2 {
             lookup.level(&mut sums, &placed[1], place, coarse);
         }
+        return F::finish(simd, sums, None);
+    };
+    // Probes stand on either side of the middle: pair 0 before and after it, pair 1, and so on.
+    let end = u32x16::truncate_from(line.end * ONE as f32 + 0.5);
+    let end_coarse = u32x16::truncate_from(line.end * plan.fraction * ONE as f32 + 0.5);
+    let none = u32x16::splat(simd, 0);
+    let mut all_weights = none;
+    for k in 0..line.pairs {
+        let k = f32x16::splat(simd, k as f32);
+        let (inner, outer) = (k.simd_lt(line.whole), k.simd_gt(line.whole));
+        let cells = inner.select(k + 0.5, line.end_at);
+        let all = inner.select(one_units, outer.select(none, end));
+        let coarse = inner.select(coarse, outer.select(none, end_coarse));
+        all_weights += all + all;
+        let (ds, dt) = (line.step_s * cells, line.step_t * cells);
+        for (s, t) in [(s - ds, t - dt), (s + ds, t + dt)] {
+            let place = lookup.place(s, t);
+            lookup.level(&mut sums, &placed[0], place, all - coarse);
+            if levels == 2 {
+                lookup.level(&mut sums, &placed[1], place, coarse);
+            }
+        }
     }
-    let weights = f32x16::float_from(all_weights) * (1.0 / ONE as f32);
-    let total = plan.line.is_some().then_some(weights);
+    let total = Some(f32x16::float_from(all_weights) * (1.0 / ONE as f32));
     F::finish(simd, sums, total)
 }
 
@@ -125,11 +137,11 @@ struct Lookup<'a, S: Simd, T> {
 }
 
 impl<S: Simd, T> Lookup<'_, S, T> {
-    /// Where each lane stands in the texture.
+    /// Where each lane stands in the texture; coordinates as [`fold`] takes them.
     #[inline(always)]
     fn place(&self, s: f32x16<S>, t: f32x16<S>) -> [f32x16<S>; 2] {
         let [s_mode, t_mode] = self.texture.modes();
-        [unit(self.simd, s_mode, s), unit(self.simd, t_mode, t)]
+        [fold(self.simd, s_mode, s), fold(self.simd, t_mode, t)]
     }
 
     /// Adds one level's texels at each lane's place.

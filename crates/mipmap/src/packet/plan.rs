@@ -34,6 +34,9 @@ pub(super) struct Line<S: Simd> {
     pub(super) pairs: u32,
 }
 
+/// The greatest distance of probes, in textures.
+const FARTHEST_STEP: f32 = 1_048_576.0;
+
 /// The footprint's ellipse in texels.
 struct Ellipse<S: Simd> {
     /// Square of the longer axis.
@@ -229,7 +232,9 @@ impl<S: Simd> Line<S> {
         let length = (ellipse.major_squared / some.select(squared, one)).sqrt() / eta;
         let [w, h] = [texture.size().x as f32, texture.size().y as f32];
         let (step_s, step_t) = (x * length * (1.0 / w), y * length * (1.0 / h));
-        let some = some & length.simd_le(f32x16::splat(simd, f32::MAX));
+        // Beyond so many textures the coarsest level answers, wherever a probe stands.
+        let farthest = f32x16::splat(simd, FARTHEST_STEP);
+        let some = some & step_s.abs().simd_le(farthest) & step_t.abs().simd_le(farthest);
         let (step_s, step_t) = (some.select(step_s, zero), some.select(step_t, zero));
         let half = eta * 0.5;
         let whole = half.floor();
@@ -244,28 +249,6 @@ impl<S: Simd> Line<S> {
             end: parting.select(one, rest),
             pairs: whole_number(pairs),
         }
-    }
-
-    /// Where probe `index` looks, and what it counts for: pairs from the middle on, of each the one before it first.
-    #[inline(always)]
-    pub(super) fn probe(
-        &self,
-        simd: S,
-        index: u32,
-        footprint: &PacketFootprint<S>,
-    ) -> (f32x16<S>, f32x16<S>, f32x16<S>) {
-        let k = f32x16::splat(simd, (index / 2) as f32);
-        let zero = f32x16::splat(simd, 0.0);
-        let one = f32x16::splat(simd, 1.0);
-        let inner = k.simd_lt(self.whole);
-        let outer = k.simd_gt(self.whole).select(zero, self.end);
-        let side = if index.is_multiple_of(2) { -1.0 } else { 1.0 };
-        let cells = inner.select(k + 0.5, self.end_at) * side;
-        (
-            footprint.s + self.step_s * cells,
-            footprint.t + self.step_t * cells,
-            inner.select(one, outer),
-        )
     }
 }
 

@@ -1,11 +1,11 @@
 //! A frame against triangles assembled and drawn one by one, on every instruction set.
 
-use fearless_simd::{Level, dispatch};
-use glam::DVec4;
+use fearless_simd::{Level, dispatch, prelude::*};
+use glam::{DVec3, DVec4, IVec2, UVec2};
 use proptest::prelude::*;
 use raster::{
     Assembly, Bins, CHUNK_TRIANGLES, Cull, Frame, MeshPart, SamplePattern, TileGrid, Triangle,
-    Viewport, VisibilityTile, assemble_triangle, project,
+    Viewport, VisibilityTile, assemble_triangle, project, surface_packet,
 };
 use texcoord::packet::{F64x16, LANES};
 
@@ -154,6 +154,57 @@ proptest! {
                         prop_assert_eq!(depths[0], depths[1]);
                     }
                 }
+                if count == 1 {
+                    check_packets(&frame, level, &found, &expected, &alone);
+                }
+            }
+        }
+    }
+}
+
+/// Weights that 16 pixels of a row get, against those of their triangles one by one.
+fn check_packets(
+    frame: &Frame,
+    level: Level,
+    found: &VisibilityTile,
+    expected: &VisibilityTile,
+    alone: &[Triangle],
+) {
+    let rect = found.rect();
+    for first in rect.pixels().filter(|p| (p.x - rect.min.x) % 16 == 0) {
+        let lanes: Vec<UVec2> = (0..16)
+            .map(|i| first + UVec2::new(i, 0))
+            .filter(|&p| rect.contains(p))
+            .collect();
+        let owner = |p: &UVec2| found.owner(*p, 0);
+        let Some(some) = lanes.iter().find_map(owner) else {
+            continue;
+        };
+        let owners: [u32; LANES] =
+            core::array::from_fn(|i| lanes.get(i).and_then(owner).unwrap_or(some));
+        let (value, dx, dy) = dispatch!(level, simd => {
+            let packet = surface_packet(simd, frame, &owners, first);
+            let slopes = |v: [fearless_simd::f32x16<_>; 3]| v.map(|x| x.to_array());
+            (packet.weights.weights.map(F64x16::to_array), slopes(packet.weights.d_dx), slopes(packet.weights.d_dy))
+        });
+        for (lane, &pixel) in lanes.iter().enumerate() {
+            let Some(k) = expected.owner(pixel, 0) else {
+                continue;
+            };
+            let truth = alone[k as usize].weights(pixel, IVec2::splat(128));
+            let at = |axes: &[[f32; LANES]; 3]| {
+                DVec3::from_array([0, 1, 2].map(|i| f64::from(axes[i][lane])))
+            };
+            let value = DVec3::from_array(value.map(|axis| axis[lane]));
+            assert_eq!(value, truth.value, "{pixel}");
+            for (found, truth) in [(at(&dx), truth.dx), (at(&dy), truth.dy)] {
+                let error = (found - truth).abs().max_element();
+                // A piece has corners in the whole with weights up to 1: three roundings, and one more.
+                let largest = truth.abs().max_element();
+                assert!(
+                    error <= 1e-30 + largest * 1e-5,
+                    "{pixel}: {error:e} of {largest:e}"
+                );
             }
         }
     }

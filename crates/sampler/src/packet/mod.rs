@@ -24,7 +24,7 @@ mod lanes;
 mod sheet;
 mod sums;
 
-pub use axis::unit;
+pub use axis::{fold, held, unit};
 pub use lanes::{channels, repeated};
 pub use sheet::{Sheet, SheetTexels};
 pub use sums::{ONE, SUMS8_MAX_ERROR, Share, Sums, Sums8, Sums16, SumsFloat, codes};

@@ -2,7 +2,9 @@
 
 use glam::DVec3;
 use proptest::prelude::*;
-use sampler::solid::{Clouds, Fractal, Lattice, Marble, Noise, NoiseKind, Stone, Sum, Wood};
+use sampler::solid::{
+    Clouds, Fractal, Lattice, Marble, NOISE_PACKET_MAX_ERROR, Noise, NoiseKind, Stone, Sum, Wood,
+};
 
 /// The permutation that Perlin published with the 2002 noise (and used before).
 static PERLIN: [u8; 256] = [
@@ -212,5 +214,68 @@ fn patterns_seen_from_afar_are_flat() {
         let wood = Wood::default();
         let mean = wood.colours[0] + (wood.colours[1] - wood.colours[0]) * 0.25;
         assert!(wood.colour(at, far).distance(mean) < 0.01);
+    }
+}
+
+/// Sixteen places at once, on either side of 0 and of lattice planes, beside one at a time; and on all levels alike.
+#[test]
+fn packets_are_sixteen_places() {
+    use fearless_simd::{Level, dispatch, f32x16, prelude::*};
+    let best = Level::new();
+    let mut levels = vec![best, Level::baseline()];
+    #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+    levels.extend(best.as_avx2().map(Level::Avx2));
+    let kinds = [
+        Noise::default(),
+        Noise {
+            lattice: Lattice::Hash { seed: 77 },
+            ..Noise::default()
+        },
+        Noise {
+            kind: NoiseKind::Perlin1985,
+            ..Noise::default()
+        },
+    ];
+    let mut state = 1u32;
+    let mut random = || {
+        state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+        (f64::from(state >> 8) / f64::from(1 << 24)) as f32
+    };
+    for round in 0..500 {
+        let reach = [2.0, 64.0, 1024.0][round % 3];
+        let mut places: [[f32; 16]; 3] =
+            std::array::from_fn(|_| std::array::from_fn(|_| (random() - 0.5) * 2.0 * reach));
+        places[round % 3][0] = (round as f32 - 250.0).floor();
+        places[1][1] = f32::NAN;
+        places[2][2] = f32::INFINITY;
+        for noise in &kinds {
+            let values: Vec<[f32; 16]> = levels
+                .iter()
+                .map(|&level| {
+                    dispatch!(level, simd => {
+                        let [x, y, z] = places;
+                        let stp = [x, y, z].map(|axis| f32x16::simd_from(simd, axis));
+                        noise.value_packet(simd, stp).to_array()
+                    })
+                })
+                .collect();
+            for (lane, value) in values[0].iter().enumerate() {
+                let place = DVec3::new(
+                    places[0][lane].into(),
+                    places[1][lane].into(),
+                    places[2][lane].into(),
+                );
+                let error = (f64::from(*value) - noise.value(place)).abs();
+                assert!(
+                    error <= f64::from(NOISE_PACKET_MAX_ERROR),
+                    "{place}: {error:e}"
+                );
+            }
+            let bits = |values: &[f32; 16]| values.map(f32::to_bits);
+            assert!(
+                values.iter().all(|v| bits(v) == bits(&values[0])),
+                "{places:?}"
+            );
+        }
     }
 }

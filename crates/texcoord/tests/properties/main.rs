@@ -9,6 +9,7 @@ mod oracle;
 mod packet;
 mod patch;
 mod perspective;
+mod planes;
 mod strategies;
 mod teapot;
 mod transform;

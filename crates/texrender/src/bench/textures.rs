@@ -108,7 +108,7 @@ mod tests {
             let level = pyramid.level(level);
             for (k, &code) in (0u32..).zip(&next) {
                 let side = level.size().x;
-                let texel = level.texel(glam::UVec2::new(k % side, k / side));
+                let texel = level.fetch(glam::UVec2::new(k % side, k / side));
                 assert_eq!((texel.x * 255.0).round(), f32::from(code));
             }
             (codes, side) = (next, half);
