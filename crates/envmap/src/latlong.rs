@@ -100,14 +100,17 @@ impl LatLong {
             dst_dx: st_derivative(direction, ddx),
             dst_dy: st_derivative(direction, ddy),
         };
-        // Near the poles texels are as narrow as the sine of the polar angle: 64 probes serve to within 1°.
-        let state = SamplerState {
-            address: ADDRESS.into(),
-            max_anisotropy: 64.0,
-            ..SamplerState::default()
-        };
-        let colour = mipmap::sample(&self.pyramid, &state, &footprint).truncate();
+        let colour = mipmap::sample(&self.pyramid, &sampler_state(), &footprint).truncate();
         self.towards_pole(st.y, colour)
+    }
+
+    pub(crate) fn pyramid(&self) -> &Pyramid {
+        &self.pyramid
+    }
+
+    /// Mean of the first and of the last row.
+    pub(crate) fn poles(&self) -> [Vec3; 2] {
+        self.poles
     }
 
     /// Level 0.
@@ -134,6 +137,16 @@ impl LatLong {
         } else {
             pole + (colour - pole) * (distance.max(0.0) * 2.0)
         }
+    }
+}
+
+/// How a map is read under a pixel.
+pub(crate) fn sampler_state() -> SamplerState {
+    // Near the poles texels are as narrow as the sine of the polar angle: 64 probes serve to within 1°.
+    SamplerState {
+        address: ADDRESS.into(),
+        max_anisotropy: 64.0,
+        ..SamplerState::default()
     }
 }
 

@@ -5,8 +5,11 @@
 //! [`fearless_simd::dispatch!`].
 //!
 //! # Accuracy
-//! Equal to the bit to the scalar functions for finite, non-zero directions; `tests/properties/packet.rs`.
+//! Tables: equal to the bit to the scalar functions. [`PackedLatLong`]: as [`mipmap::packet`] and
+//! [`shading::packet::atan2`]. `tests/properties/packet.rs`.
 
 mod cube;
+mod latlong;
 
 pub use cube::{irradiance, specular};
+pub use latlong::PackedLatLong;

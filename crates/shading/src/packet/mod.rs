@@ -30,6 +30,7 @@
 //! Within [`PACKET_MAX_DIFFERENCE`] of the scalar functions, relative to the greater of 1 and the result; most
 //! lanes are equal to the bit. `tests/properties/packet.rs`.
 
+mod angle;
 mod light;
 mod reflectance;
 mod select;
@@ -37,6 +38,7 @@ mod surface;
 mod transpose;
 mod vector;
 
+pub use angle::{ATAN2_MAX_ABS_ERROR, atan2};
 pub use light::{Incident, incident};
 pub use reflectance::reflectance;
 pub use select::{at_least_zero, unit_or_zero};

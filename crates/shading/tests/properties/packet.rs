@@ -254,3 +254,30 @@ fn rows_of_four_become_four_packets() {
         });
     }
 }
+
+proptest! {
+    #[test]
+    fn angles_are_those_of_f64_on_every_level(
+        y in uniform16(prop_oneof![Just(0.0f32), Just(1.0), -1f32..1.0, -1e-6f32..1e-6, -1e20f32..1e20]),
+        x in uniform16(prop_oneof![Just(0.0f32), Just(-1.0), -1f32..1.0, -1e-6f32..1e-6, -1e20f32..1e20]),
+    ) {
+        let run = |level| -> [f32; LANES] {
+            dispatch!(level, simd => {
+                *packet::atan2(f32x16::simd_from(simd, y), f32x16::simd_from(simd, x))
+            })
+        };
+        let found = run(Level::new());
+        for lane in 0..LANES {
+            // +0 and −0 are one number here.
+            let wanted = f64::from(y[lane] + 0.0).atan2(f64::from(x[lane] + 0.0));
+            let error = (f64::from(found[lane]) - wanted).abs();
+            prop_assert!(
+                error <= f64::from(packet::ATAN2_MAX_ABS_ERROR),
+                "{} {}: {} instead of {wanted}", y[lane], x[lane], found[lane],
+            );
+        }
+        for level in levels() {
+            prop_assert_eq!(run(level).map(f32::to_bits), found.map(f32::to_bits), "{:?}", level);
+        }
+    }
+}

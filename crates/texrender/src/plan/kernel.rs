@@ -5,9 +5,10 @@ use mipmap::{MipFilter, SamplerState};
 use texcoord::AffineTransform;
 
 use super::filter::{MapReading, chosen_filter, chosen_reading};
-use super::texture::{PyramidNeed, SheetNeed, TextureNeed, TextureRole};
+use super::texture::{PyramidNeed, Readers, SheetNeed, TextureNeed, TextureRole};
 use super::{Plan, TangentNeed};
 use crate::scene::{AlphaMode, Material, MaterialModel, Primitive, Scene, TextureUse, Topology};
+use crate::settings::Aov;
 
 /// How the surface of a primitive is shaded: its factors, and the maps that change them.
 #[derive(Clone, Debug)]
@@ -341,6 +342,10 @@ impl<'a> KernelBuilder<'a> {
         );
         let reading = chosen_reading(self.plan.settings.filter, &sampler);
         let in_packets = reading == MapReading::Sampler && mipmap::packet::reads(&sampler);
+        let tells_level = self.plan.settings.aovs.contains(&Aov::MipLevel);
+        if !in_packets || tells_level {
+            self.plan.textures[texture].readers = Readers::Pixels;
+        }
         Some(Map {
             texture,
             reading,

@@ -24,7 +24,7 @@ pub use filter::MapReading;
 pub use kernel::{
     Coverage, Curvature, Kernel, Lighting, LitKernel, Map, Reflectance, Sidedness, TangentSource,
 };
-pub use texture::{PyramidNeed, SheetNeed, TextureNeed, TextureRole};
+pub use texture::{PyramidNeed, Readers, SheetNeed, TextureNeed, TextureRole};
 pub use view::Viewpoint;
 use visible::Culling;
 pub(crate) use visible::in_view;
@@ -159,8 +159,17 @@ impl Plan {
     /// Bytes that textures, pyramids and the film will take.
     #[must_use]
     pub fn estimated_bytes(&self) -> u64 {
-        let textures: u64 = self.textures.iter().map(TextureNeed::bytes).sum();
-        textures + crate::render::Film::bytes_for(self)
+        // A pyramid that only packets read is let go once it is laid out: the largest is there beside the sheets.
+        let pyramids = self.textures.iter();
+        let kept = pyramids
+            .clone()
+            .filter(|need| need.readers == Readers::Pixels);
+        let kept: u64 = kept.map(TextureNeed::bytes).sum();
+        let passing = pyramids.filter(|need| need.readers == Readers::Packets);
+        let passing = passing.map(TextureNeed::bytes).max().unwrap_or(0);
+        let sheets = self.sheets.iter();
+        let sheets: u64 = sheets.map(|need| need.bytes(&self.textures)).sum();
+        kept + passing + sheets + crate::render::Film::bytes_for(self)
     }
 
     /// Whether any visible surface shows its colour untouched by light and tone.

@@ -2,7 +2,7 @@
 
 use glam::UVec2;
 use rayon::prelude::*;
-use sampler::Addressing;
+use sampler::{AddressMode, Addressing};
 
 use super::Plan;
 use crate::error::Error;
@@ -22,8 +22,19 @@ pub struct TextureNeed {
     pub size: UVec2,
     /// Bytes of a decoded texel.
     pub texel_bytes: u64,
+    /// Who reads it.
+    pub readers: Readers,
     /// What it is for, one entry a use.
     pub reasons: Vec<String>,
+}
+
+/// How the maps that use a texture read it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Readers {
+    /// All from sheets laid out for packets: the pyramid is not kept beside them.
+    Packets,
+    /// Some pixel by pixel, from the pyramid: by a filter that packets do not have, or to tell its level.
+    Pixels,
 }
 
 /// What the texels of an image mean, which decides how they are decoded and filtered.
@@ -112,6 +123,7 @@ impl TextureNeed {
                 pyramid,
                 size: UVec2::ZERO,
                 texel_bytes: 0,
+                readers: Readers::Packets,
                 reasons: Vec::new(),
             });
             needs.len() - 1
@@ -125,13 +137,38 @@ impl TextureNeed {
         index
     }
 
-    /// Bytes it will take once prepared.
+    /// Bytes that it takes once decoded, with its levels.
     #[must_use]
     pub fn bytes(&self) -> u64 {
         let level0 = u64::from(self.size.x) * u64::from(self.size.y) * self.texel_bytes;
         match self.pyramid {
             PyramidNeed::None => level0,
             PyramidNeed::Full => level0 + level0 / 3,
+        }
+    }
+}
+
+impl SheetNeed {
+    /// Bytes that it takes: half as many texels again as level 0, of four channels in the least format that holds
+    /// them.
+    #[must_use]
+    pub fn bytes(&self, textures: &[TextureNeed]) -> u64 {
+        let texture = &textures[self.texture];
+        let linear = matches!(
+            texture.role,
+            TextureRole::Data | TextureRole::MetallicRoughness | TextureRole::Normal
+        );
+        let bordered = self.address.modes.contains(&AddressMode::ClampToBorder);
+        let texel: u64 = match texture.texel_bytes {
+            _ if bordered => 16,
+            ..=4 if linear => 4,
+            ..=8 => 8,
+            _ => 16,
+        };
+        let level0 = u64::from(texture.size.x) * u64::from(texture.size.y) * texel;
+        match texture.pyramid {
+            PyramidNeed::None => level0,
+            PyramidNeed::Full => level0 + level0 / 2,
         }
     }
 }

@@ -1,5 +1,6 @@
 //! Light from afar, as tables that shading reads.
 
+use envmap::packet::PackedLatLong;
 use envmap::{
     CubeFace, CubeMap, CubePyramid, IrradianceTable, LatLong, SpecularTable, cube_to_direction,
     irradiance_face, prefilter_face, resample_latlong_face, studio, studio_radiance,
@@ -29,7 +30,7 @@ const IRRADIANCE_SIZE: u32 = 16;
 #[derive(Debug)]
 pub struct Environment {
     /// What is seen behind everything, if anything is.
-    latlong: Option<LatLong>,
+    latlong: Option<PackedLatLong>,
     tables: Option<(IrradianceTable, SpecularTable)>,
     /// From the world to the map.
     rotation: Mat3,
@@ -76,14 +77,25 @@ impl Environment {
         Vec3x16::new(row(0), row(1), row(2))
     }
 
-    /// Radiance seen in a unit direction by a pixel whose neighbours look `dx` and `dy` further; 0 if
+    /// Radiance seen in sixteen unit directions by pixels whose neighbours look `dx` and `dy` further; 0 if
     /// the environment is not seen.
+    #[inline(always)]
     #[must_use]
-    pub fn seen(&self, direction: Vec3, dx: Vec3, dy: Vec3) -> Vec3 {
-        let turn = |v: Vec3| self.rotation * v;
-        self.latlong.as_ref().map_or(Vec3::ZERO, |latlong| {
-            latlong.radiance_filtered(turn(direction), turn(dx), turn(dy))
-        })
+    pub fn seen<S: Simd>(
+        &self,
+        simd: S,
+        direction: Vec3x16<S>,
+        [dx, dy]: [Vec3x16<S>; 2],
+    ) -> Vec3x16<S> {
+        match &self.latlong {
+            Some(map) => map.radiance_filtered(
+                simd,
+                self.turned(direction),
+                self.turned(dx),
+                self.turned(dy),
+            ),
+            None => Vec3x16::splat(simd, Vec3::ZERO),
+        }
     }
 
     /// Number of irradiance and blurred maps.
@@ -105,7 +117,7 @@ pub(super) fn prepare(need: &EnvironmentNeed, plan: &Plan) -> Result<Environment
         .transpose()?;
     let latlong = need.background.then(|| {
         let latlong = file.unwrap_or_else(|| studio(STUDIO_WIDTH));
-        latlong.with_levels()
+        PackedLatLong::new(&latlong.with_levels())
     });
     let angle = plan.settings.environment_rotation.to_radians();
     let (sin, cos) = (libm::sinf(angle), libm::cosf(angle));

@@ -15,15 +15,15 @@ use sampler::{AlphaMode, Texture, Transfer};
 use shading::ReflectanceTable;
 
 use crate::error::Error;
-use crate::plan::{Plan, PyramidNeed, TextureNeed, TextureRole};
+use crate::plan::{Plan, PyramidNeed, Readers, TextureNeed, TextureRole};
 use crate::scene::Scene;
 pub use environment::Environment;
 
 /// Everything that rendering reads beside the scene and the plan.
 #[derive(Debug)]
 pub struct Resources {
-    /// One for each of [`Plan::textures`].
-    pub textures: Vec<Pyramid>,
+    /// One for each of [`Plan::textures`] that is read pixel by pixel.
+    pub textures: Vec<Option<Pyramid>>,
     /// One for each of [`Plan::sheets`].
     pub sheets: Vec<PackedPyramid>,
     /// One for each of [`Plan::tangents`]: tangents a triangle corner.
@@ -75,7 +75,14 @@ pub fn prepare(scene: &Scene, plan: &Plan) -> Result<Resources, Error> {
             )
         },
     );
-    let (textures, environment) = (textures?, environment?);
+    let (
+        Textures {
+            pyramids,
+            sheets,
+            built,
+        },
+        environment,
+    ) = (textures?, environment?);
     let generated: Vec<_> = plan
         .tangents
         .par_iter()
@@ -83,19 +90,19 @@ pub fn prepare(scene: &Scene, plan: &Plan) -> Result<Resources, Error> {
         .collect();
     let counts = PrepareCounts {
         images_decoded: by_image(plan).len(),
-        texture_bytes: textures.iter().map(Pyramid::byte_len).sum(),
-        pyramids_built: textures.iter().filter(|p| p.levels() > 1).count(),
+        texture_bytes: pyramids
+            .iter()
+            .flatten()
+            .map(Pyramid::byte_len)
+            .sum::<usize>()
+            + sheets.iter().map(PackedPyramid::byte_len).sum::<usize>(),
+        pyramids_built: built,
         tangents_built: generated.len(),
         tangent_fallbacks: generated.iter().map(|t| t.fallbacks).sum(),
         environment_tables_built: environment.as_ref().map_or(0, Environment::tables),
     };
-    let sheets = plan
-        .sheets
-        .par_iter()
-        .map(|need| PackedPyramid::new(&textures[need.texture], &need.address))
-        .collect();
     Ok(Resources {
-        textures,
+        textures: pyramids,
         sheets,
         tangents: generated.into_iter().map(|t| t.corners).collect(),
         environment,
@@ -113,14 +120,32 @@ fn by_image(plan: &Plan) -> BTreeMap<usize, Vec<usize>> {
     uses
 }
 
-fn textures(scene: &Scene, plan: &Plan) -> Result<Vec<Pyramid>, Error> {
+/// What rendering reads of the images.
+struct Textures {
+    pyramids: Vec<Option<Pyramid>>,
+    sheets: Vec<PackedPyramid>,
+    /// Textures with mip levels.
+    built: usize,
+}
+
+/// One texture of the plan.
+struct Made {
+    /// Index into [`Plan::textures`].
+    texture: usize,
+    pyramid: Option<Pyramid>,
+    /// With their indices into [`Plan::sheets`].
+    sheets: Vec<(usize, PackedPyramid)>,
+    levels: u32,
+}
+
+fn textures(scene: &Scene, plan: &Plan) -> Result<Textures, Error> {
     let mut uses: Vec<(usize, Vec<usize>)> = by_image(plan).into_iter().collect();
     // Largest first, so that no core is left with one at the end.
     uses.sort_by_key(|(_, needs)| {
         let size = plan.textures[needs[0]].size;
         std::cmp::Reverse(u64::from(size.x) * u64::from(size.y))
     });
-    let made: Vec<Vec<(usize, Pyramid)>> = uses
+    let made: Vec<Vec<Made>> = uses
         .into_par_iter()
         .map(|(image, needs)| {
             let source = &scene.images[image];
@@ -130,14 +155,39 @@ fn textures(scene: &Scene, plan: &Plan) -> Result<Vec<Pyramid>, Error> {
                 .into_iter()
                 .zip(copies)
                 .map(|(index, picture)| {
-                    pyramid(&plan.textures[index], picture, &source.name).map(|p| (index, p))
+                    let pyramid = pyramid(&plan.textures[index], picture, &source.name)?;
+                    Ok(laid_out(plan, index, pyramid))
                 })
                 .collect::<Result<_, Error>>()
         })
         .collect::<Result<_, Error>>()?;
-    let mut made: Vec<(usize, Pyramid)> = made.into_iter().flatten().collect();
-    made.sort_by_key(|(index, _)| *index);
-    Ok(made.into_iter().map(|(_, pyramid)| pyramid).collect())
+    let mut made: Vec<Made> = made.into_iter().flatten().collect();
+    made.sort_by_key(|made| made.texture);
+    let built = made.iter().filter(|made| made.levels > 1).count();
+    let (mut pyramids, mut sheets) = (Vec::new(), Vec::new());
+    for texture in made {
+        pyramids.push(texture.pyramid);
+        sheets.extend(texture.sheets);
+    }
+    sheets.sort_by_key(|(index, _)| *index);
+    Ok(Textures {
+        pyramids,
+        sheets: sheets.into_iter().map(|(_, sheet)| sheet).collect(),
+        built,
+    })
+}
+
+/// A texture's pyramid as its readers want it.
+fn laid_out(plan: &Plan, texture: usize, pyramid: Pyramid) -> Made {
+    let wanted = plan.sheets.iter().enumerate();
+    let wanted = wanted.filter(|(_, need)| need.texture == texture);
+    let sheets = wanted.map(|(index, need)| (index, PackedPyramid::new(&pyramid, &need.address)));
+    Made {
+        texture,
+        sheets: sheets.collect(),
+        levels: pyramid.levels(),
+        pyramid: (plan.textures[texture].readers == Readers::Pixels).then_some(pyramid),
+    }
 }
 
 /// A decoded image as the texture that a need describes.

@@ -95,6 +95,25 @@ impl Rays {
         }
     }
 
+    /// Unit directions that pixels look in at points of the picture, and their changes to the next pixel.
+    #[inline(always)]
+    pub(super) fn away<S: Simd>(
+        &self,
+        simd: S,
+        x: f32x16<S>,
+        y: f32x16<S>,
+    ) -> (Vec3x16<S>, [Vec3x16<S>; 2]) {
+        let along_x = Vec3x16::splat(simd, self.along_x);
+        let along_y = Vec3x16::splat(simd, self.along_y);
+        let ray = Vec3x16::splat(simd, self.corner) + along_x * x + along_y * y;
+        let per_length = f32x16::splat(simd, 1.0) / ray.length();
+        let toward = ray * per_length;
+        // ∂(r/‖r‖) = (∂r − r̂ (r̂·∂r)) / ‖r‖.
+        let change_x = (along_x - toward * toward.dot(along_x)) * per_length;
+        let change_y = (along_y - toward * toward.dot(along_y)) * per_length;
+        (-toward, [-change_x, -change_y])
+    }
+
     /// Unit directions toward the viewer at points of the picture, in pixels from its top left corner.
     #[inline(always)]
     pub(super) fn toward<S: Simd>(&self, simd: S, x: f32x16<S>, y: f32x16<S>) -> Vec3x16<S> {

@@ -11,6 +11,7 @@
 //! Shading runs on packets of sixteen pairs across triangle borders. What a kernel does not use (a map, a vertex
 //! colour, positions) has no row in its records and is asked about once a packet, not once a pixel.
 
+mod background;
 mod film;
 mod fragments;
 mod frame;

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use glam::{DVec2, IVec2, UVec2, Vec4};
+use glam::{IVec2, UVec2, Vec4};
 use raster::{DepthFunction, Rect};
 
 use super::film::FilmTile;
@@ -10,7 +10,6 @@ use super::frame::Frame;
 use super::geometry::Geometry;
 use super::pairs::{Pair, Pairs, Shaded};
 use super::shade::Values;
-use crate::settings::Background;
 
 /// Light and coverage, premultiplied.
 #[derive(Clone, Copy, Debug, Default)]
@@ -70,7 +69,15 @@ pub(super) struct Resolver<'a> {
 
 impl Resolver<'_> {
     /// The pixels, row by row, into `film`.
-    pub(super) fn resolve(&self, pairs: &Pairs, layers: &mut Layers, film: &mut FilmTile) {
+    ///
+    /// `background`: light and coverage of what is behind everything; empty where the film holds nothing of it.
+    pub(super) fn resolve(
+        &self,
+        pairs: &Pairs,
+        background: &[Vec4],
+        layers: &mut Layers,
+        film: &mut FilmTile,
+    ) {
         let plan = self.frame.plan;
         let pixels = (self.rect.size().x * self.rect.size().y) as usize;
         film.clear(pixels, plan);
@@ -87,7 +94,12 @@ impl Resolver<'_> {
             let surfaces = surface..run(surface, pairs.visible, number);
             let over = blended..run(blended, pairs.all.len(), number);
             (surface, blended) = (surfaces.end, over.end);
-            let light = self.light(pixel, pairs, surfaces.clone(), over.clone(), layers);
+            let background = background
+                .get(number as usize)
+                .copied()
+                .unwrap_or(Vec4::ZERO);
+            let at = (pixel, background);
+            let light = self.light(at, pairs, surfaces.clone(), over.clone(), layers);
             film.lit.push(light.lit);
             if let Some(unlit) = &mut film.unlit {
                 unlit.push(light.unlit);
@@ -101,7 +113,7 @@ impl Resolver<'_> {
     /// The light of a pixel. `surfaces`, `over`: its visible and its blended pairs.
     fn light(
         &self,
-        pixel: UVec2,
+        (pixel, background): (UVec2, Vec4),
         pairs: &Pairs,
         surfaces: Range<usize>,
         over: Range<usize>,
@@ -117,11 +129,6 @@ impl Resolver<'_> {
             return Light::of(&shaded[0]);
         }
         let covered = visible.iter().fold(0, |all, pair| all | pair.mask);
-        let background = if covered == full {
-            Vec4::ZERO
-        } else {
-            self.background(pixel)
-        };
         if over.is_empty() {
             let share = 1.0 / full.count_ones() as f32;
             let mut sum = Light::default();
@@ -220,31 +227,6 @@ impl Resolver<'_> {
         }
         let same = |(a, b): (&(f32, usize), &(f32, usize))| a.1 == b.1;
         order.len() == before.len() && order.iter().zip(before.iter()).all(same)
-    }
-
-    /// Light and coverage of what is behind everything in a pixel, as far as the film holds it.
-    fn background(&self, pixel: UVec2) -> Vec4 {
-        let Frame {
-            plan, resources, ..
-        } = &self.frame;
-        match (plan.settings.background, resources.environment.as_ref()) {
-            (Background::Environment, Some(environment)) => {
-                let size = DVec2::new(
-                    f64::from(plan.settings.width),
-                    f64::from(plan.settings.height),
-                );
-                let aspect = size.x / size.y;
-                let ray = |x: f64, y: f64| {
-                    let at = (pixel.as_dvec2() + DVec2::new(0.5 + x, 0.5 + y)) / size;
-                    let ndc = DVec2::new(2.0 * at.x - 1.0, 1.0 - 2.0 * at.y);
-                    plan.viewpoint.ray(ndc, aspect).normalize().as_vec3()
-                };
-                let direction = ray(0.0, 0.0);
-                let (dx, dy) = (ray(1.0, 0.0) - direction, ray(0.0, 1.0) - direction);
-                environment.seen(direction, dx, dy).extend(1.0)
-            }
-            _ => Vec4::ZERO,
-        }
     }
 }
 

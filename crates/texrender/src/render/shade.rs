@@ -202,6 +202,10 @@ fn surface<S: Simd>(
 
 /// Texels of a map, if there is one.
 #[inline(always)]
+#[allow(
+    clippy::manual_map,
+    reason = "a closure would be compiled for the plain instruction set"
+)]
 fn sampled<S: Simd>(fragments: &Fragments<'_, S>, map: &Option<Map>) -> Option<[f32x16<S>; 4]> {
     match map {
         Some(map) => Some(fragments.sample(map)),

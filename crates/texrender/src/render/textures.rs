@@ -63,7 +63,7 @@ fn unpremultiplied<S: Simd>(simd: S, [r, g, b, alpha]: [f32x16<S>; 4]) -> [f32x1
 /// For filters that read no packets.
 #[inline(always)]
 fn one_by_one<S: Simd>(simd: S, frame: &Frame, map: &Map, at: &Coordinates<S>) -> [f32x16<S>; 4] {
-    let pyramid = &frame.resources.textures[map.texture];
+    let pyramid = pyramid(frame, map);
     let texels = at
         .footprints()
         .map(|footprint| read(pyramid, map, &footprint).0);
@@ -82,9 +82,14 @@ pub(super) fn levels_of_detail<S: Simd>(
     map: &Map,
     at: &Coordinates<S>,
 ) -> [f32; 16] {
-    let pyramid = &frame.resources.textures[map.texture];
+    let pyramid = pyramid(frame, map);
     at.footprints()
         .map(|footprint| read(pyramid, map, &footprint).1)
+}
+
+fn pyramid<'a>(frame: &Frame<'a>, map: &Map) -> &'a Pyramid {
+    let pyramid = frame.resources.textures[map.texture].as_ref();
+    pyramid.expect("the plan keeps what is read pixel by pixel")
 }
 
 impl<S: Simd> Coordinates<S> {

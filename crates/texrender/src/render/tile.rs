@@ -4,8 +4,10 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Instant;
 
 use fearless_simd::{Level, dispatch};
+use glam::Vec4;
 use raster::{Rect, SamplePattern, VisibilityTile};
 
+use super::background::background;
 use super::film::FilmTile;
 use super::frame::Frame;
 use super::geometry::Geometry;
@@ -31,6 +33,7 @@ pub(super) struct TileScratch {
     tested: Vec<(u32, usize)>,
     pairs: Pairs,
     packet: Packet,
+    background: Vec<Vec4>,
     layers: Layers,
 }
 
@@ -42,6 +45,7 @@ impl TileScratch {
             tested: Vec::new(),
             pairs: Pairs::default(),
             packet: Packet::default(),
+            background: Vec::new(),
             layers: Layers::default(),
         }
     }
@@ -98,7 +102,10 @@ impl<'a> TileRenderer<'a> {
             geometry: self.geometry,
             rect,
         };
-        resolver.resolve(&scratch.pairs, &mut scratch.layers, film);
+        let (pairs, behind) = (&scratch.pairs, &mut scratch.background);
+        let full = self.geometry.pattern.full_mask();
+        background(&self.frame, rect, pairs, full, behind);
+        resolver.resolve(pairs, behind, &mut scratch.layers, film);
         self.times
             .add(seen - start, shaded - seen, shaded.elapsed());
     }
