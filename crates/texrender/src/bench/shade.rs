@@ -101,7 +101,7 @@ impl TileShader<'_> {
     }
 
     /// Sixteen pixels of one triangle.
-    #[inline(always)]
+    #[inline(never)]
     fn one_triangle<S: Simd>(
         &self,
         simd: S,
@@ -120,9 +120,14 @@ impl TileShader<'_> {
                 &last.insert(LastPlanes { owner, planes }).planes
             }
         };
-        let coordinates = planes.packet(simd, at[0] as f64, at[1] as f64);
-        let footprint = footprint(self.textures[0], &coordinates);
-        sample_codes(simd, self.textures[0], self.state, &footprint)
+        simd.vectorize(
+            #[inline(always)]
+            || {
+                let coordinates = planes.packet(simd, at[0] as f64, at[1] as f64);
+                let footprint = footprint(self.textures[0], &coordinates);
+                sample_codes(simd, self.textures[0], self.state, &footprint)
+            },
+        )
     }
 
     /// Texture coordinates over a triangle, from the first pixel of a tile.
@@ -143,8 +148,18 @@ impl TileShader<'_> {
     }
 
     /// Sixteen pixels, each of a triangle of its own.
-    #[inline(always)]
+    ///
+    /// One function however many callers: inlined it is 20 KiB of code each, for each instruction set.
+    #[inline(never)]
     fn many_triangles<S: Simd>(&self, simd: S, owners: &[u32; LANES], first: UVec2) -> u32x16<S> {
+        simd.vectorize(
+            #[inline(always)]
+            || self.mixed_triangles(simd, owners, first),
+        )
+    }
+
+    #[inline(always)]
+    fn mixed_triangles<S: Simd>(&self, simd: S, owners: &[u32; LANES], first: UVec2) -> u32x16<S> {
         let surfaces = surface_packet(simd, self.frame, owners, first);
         let corners = self.rows(simd, 0, &surfaces);
         let coordinates = coordinates(&surfaces, &corners);
