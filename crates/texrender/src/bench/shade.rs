@@ -100,8 +100,8 @@ impl TileShader<'_> {
         covered.select(found, clear)
     }
 
-    /// Sixteen pixels of one triangle.
-    #[inline(never)]
+    /// Sixteen pixels of one triangle: inlined, so that its planes stay in registers along a row.
+    #[inline(always)]
     fn one_triangle<S: Simd>(
         &self,
         simd: S,
@@ -120,14 +120,9 @@ impl TileShader<'_> {
                 &last.insert(LastPlanes { owner, planes }).planes
             }
         };
-        simd.vectorize(
-            #[inline(always)]
-            || {
-                let coordinates = planes.packet(simd, at[0] as f64, at[1] as f64);
-                let footprint = footprint(self.textures[0], &coordinates);
-                sample_codes(simd, self.textures[0], self.state, &footprint)
-            },
-        )
+        let coordinates = planes.packet(simd, at[0] as f64, at[1] as f64);
+        let footprint = footprint(self.textures[0], &coordinates);
+        sample_codes(simd, self.textures[0], self.state, &footprint)
     }
 
     /// Texture coordinates over a triangle, from the first pixel of a tile.
