@@ -70,6 +70,20 @@ fn the_showcase_loads_and_plans_without_warnings() {
     assert_eq!(plan.warnings, Vec::<String>::new());
 }
 
+/// The scene for timing is as heavy as is said of it, but for the side of its textures.
+#[test]
+fn the_heavy_scene_is_heavy() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let path = folder.path().join("heavy.glb");
+    std::fs::write(&path, generator::build_heavy(8)).expect("writes");
+    let scene = texrender::load(&path, &LoadOptions::default()).expect("loads");
+    let triangles: usize = scene.primitives.iter().map(|p| p.indices.len()).sum();
+    assert!(triangles >= 150_000, "{triangles} triangles");
+    assert_eq!(scene.images.len(), 36);
+    let plan = Plan::new(&scene, &settings()).expect("plans");
+    assert_eq!(plan.warnings, [""; 0]);
+}
+
 #[test]
 fn the_showcase_is_small() {
     let bytes = std::fs::metadata(repository().join("assets/showcase.glb"))

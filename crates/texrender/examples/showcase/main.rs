@@ -17,7 +17,7 @@ fn main() -> ExitCode {
     let arguments: Vec<_> = std::env::args_os().skip(1).collect();
     let (path, bytes) = match arguments.as_slice() {
         [path] => (path, scene::build()),
-        [path, kind] if kind == "heavy" => (path, scene::build_heavy()),
+        [path, kind] if kind == "heavy" => (path, scene::build_heavy(1024)),
         _ => {
             eprintln!("usage: showcase FILE.glb [heavy]");
             return ExitCode::from(2);

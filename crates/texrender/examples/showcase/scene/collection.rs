@@ -12,15 +12,14 @@ use super::paint::{mix, normals, rgb, step};
 const BALLS: [u32; 2] = [4, 3];
 /// Facets round a ball and from pole to pole: 16,384 triangles.
 const FACETS: [u32; 2] = [128, 65];
-/// Side of a texture, in texels.
-const SIDE: u32 = 1024;
 
-pub(super) fn add(document: &mut Document) {
+/// `side`: of a texture, in texels.
+pub(super) fn add(document: &mut Document, side: u32) {
     for number in 0..BALLS[0] * BALLS[1] {
         let place = Vec2::new((number % BALLS[0]) as f32, (number / BALLS[0]) as f32);
         let middle = (Vec2::new(BALLS[0] as f32, BALLS[1] as f32) - 1.0) * 0.5;
         let centre = ((place - middle) * 2.3).extend(0.0);
-        let material = material(document, number);
+        let material = material(document, number, side);
         let ball = Mesh::sphere(Vec3::ZERO, 1.0, FACETS[0], FACETS[1]);
         let name = format!("ball {number}");
         let mesh = document.mesh(&name, &[(&ball, material)]);
@@ -32,9 +31,9 @@ pub(super) fn add(document: &mut Document) {
 }
 
 /// Glazed cells in mortar: another palette, size and gloss for each number.
-fn material(document: &mut Document, number: u32) -> usize {
+fn material(document: &mut Document, number: u32, side: u32) -> usize {
     let seed = 100 + 10 * number;
-    let size = UVec2::splat(SIDE);
+    let size = UVec2::splat(side);
     let count = IVec2::splat(6 + 2 * (number % 5).cast_signed()) * IVec2::new(2, 1);
     let of = |k: i32| random(k, number.cast_signed(), seed);
     let (warm, cool) = (
