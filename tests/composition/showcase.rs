@@ -80,8 +80,8 @@ fn the_heavy_scene_is_heavy() {
     let triangles: usize = scene.primitives.iter().map(|p| p.indices.len()).sum();
     assert!(triangles >= 150_000, "{triangles} triangles");
     assert_eq!(scene.images.len(), 36);
-    let plan = Plan::new(&scene, &settings()).expect("plans");
-    assert_eq!(plan.warnings, [""; 0]);
+    let plan = Plan::new(&scene, &Settings::default()).expect("plans");
+    assert_eq!(plan.warnings, Vec::<String>::new());
 }
 
 #[test]
