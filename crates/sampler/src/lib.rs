@@ -38,6 +38,9 @@
 //! Filtered colour that belongs to alpha should be premultiplied: [`Texture::premultiplied`] before,
 //! [`unpremultiply`] after.
 //!
+//! # Sixteen at once: [`packet`]
+//! What packets of lookups are made of: texels on a sheet, places by address mode, weighted sums.
+//!
 //! # Patterns in space: [`solid`]
 //! Checkers, stripes, grids, noise, marble, wood, stone and clouds, filtered over the pixel's box.
 //!
@@ -59,6 +62,7 @@
 //! | [`bilinear_fixed`], [`FixedMean`], 8 bit | [`BILINEAR_FIXED_MAX_ERROR`] | `tests/properties/fixed.rs` |
 //! | [`solid`] checkers, stripes, grids over a box | 1e-6 | `tests/properties/solid_regular.rs` |
 //! | [`bicubic`] | [`BICUBIC_MAX_ERROR_ULPS`] ulp of the largest texel read | `tests/properties/bicubic.rs` |
+//! | [`packet::Sums8`]; [`packet::Sums16`] | [`packet::SUMS8_MAX_ERROR`]; 1e-6 | `tests/properties/packet.rs` |
 //! | [`tile::make_tileable`] | mean 3 % of the range, deviation 10 % | `tests/properties/tile.rs` |
 //! | sRGB decode, 8 and 16 bit | nearest f32 | `tests/properties/transfer.rs` |
 //! | sRGB encode, 8 bit | exactly rounded for all 2³² inputs | `tests/properties/transfer.rs` |

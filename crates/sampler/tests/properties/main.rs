@@ -14,6 +14,7 @@ mod cube;
 mod fixed;
 mod non_finite;
 mod oracle;
+mod packet;
 mod pick;
 mod solid_noise;
 mod solid_regular;
