@@ -31,7 +31,7 @@ pub fn held<S: Simd>(simd: S, coordinate: f32x16<S>) -> f32x16<S> {
     known.min(farthest).max(-farthest)
 }
 
-/// [`unit`] of a coordinate within ±2³⁰.
+/// [`unit()`] of a coordinate within ±2³⁰.
 #[inline(always)]
 pub fn fold<S: Simd>(simd: S, mode: AddressMode, coordinate: f32x16<S>) -> f32x16<S> {
     let zero = f32x16::splat(simd, 0.0);

@@ -11,7 +11,7 @@
 //!
 //! * [`Sheet`]: texels in rows with a ring of the texels that the address mode finds beyond the border, so that a
 //!   lookup never asks which mode it has; one stride for all levels of a pyramid.
-//! * [`unit`]: a coordinate, by its address mode, to its place in the texture.
+//! * [`unit()`]: a coordinate, by its address mode, to its place in the texture.
 //! * [`Sums8`], [`Sums16`], [`SumsFloat`]: weighted sums of texels of a kind, all [`Sums`].
 //!
 //! # Accuracy
