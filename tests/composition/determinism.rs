@@ -8,24 +8,11 @@ use crate::glb::Glb;
 /// A lit, textured, normal-mapped, masked and blended scene.
 fn rich() -> Glb {
     let mut glb = Glb::new();
-    let texels: Vec<[u8; 4]> = (0..64u8)
-        .map(|i| [i.wrapping_mul(37), i.wrapping_mul(91), 255 - i, 120 + i * 2])
-        .collect();
-    let color = glb.texture(8, 8, &texels);
-    let bumps: Vec<[u8; 4]> = (0..64u8).map(|i| [100 + i, 160 - i, 250, 255]).collect();
-    let normal = glb.texture(8, 8, &bumps);
-    for (mode, z) in [("OPAQUE", 0.0), ("MASK", 0.3), ("BLEND", 0.6)] {
-        let material = glb.push(
-            "materials",
-            json!({
-                "pbrMetallicRoughness": {
-                    "baseColorTexture": { "index": color }, "metallicFactor": 0.3, "roughnessFactor": 0.4,
-                },
-                "normalTexture": { "index": normal },
-                "alphaMode": mode, "alphaCutoff": 0.7, "doubleSided": true,
-            }),
-        );
-        let node = glb.quad(0.0, material);
+    for (node, z) in glb
+        .quads_of_three_modes(120)
+        .into_iter()
+        .zip([0.0, 0.3, 0.6])
+    {
         glb.json["nodes"][node]["rotation"] = json!([0.1, z, 0.05, 0.9]);
     }
     glb

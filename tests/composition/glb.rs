@@ -141,6 +141,34 @@ impl Glb {
     }
 
     /// Appends an unlit material of one colour.
+    /// Quads of a base colour and a normal map, one opaque, one masked and one blended; returns their nodes.
+    ///
+    /// `least_alpha`: of the base colour's first texel.
+    pub(crate) fn quads_of_three_modes(&mut self, least_alpha: u8) -> [usize; 3] {
+        let texels: Vec<[u8; 4]> = (0..64u8)
+            .map(|i| {
+                let alpha = least_alpha + i * 2;
+                [i.wrapping_mul(37), i.wrapping_mul(91), 255 - i, alpha]
+            })
+            .collect();
+        let color = self.texture(8, 8, &texels);
+        let bumps: Vec<[u8; 4]> = (0..64u8).map(|i| [100 + i, 160 - i, 250, 255]).collect();
+        let normal = self.texture(8, 8, &bumps);
+        ["OPAQUE", "MASK", "BLEND"].map(|mode| {
+            let material = self.push(
+                "materials",
+                json!({
+                    "pbrMetallicRoughness": {
+                        "baseColorTexture": { "index": color }, "metallicFactor": 0.3, "roughnessFactor": 0.4,
+                    },
+                    "normalTexture": { "index": normal },
+                    "alphaMode": mode, "alphaCutoff": 0.7, "doubleSided": true,
+                }),
+            );
+            self.quad(0.0, material)
+        })
+    }
+
     pub(crate) fn unlit(&mut self, color: [f32; 4]) -> usize {
         self.push(
             "materials",

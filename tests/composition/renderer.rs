@@ -12,24 +12,11 @@ use crate::glb::Glb;
 /// Textured, bumpy, masked and blended quads beside each other.
 fn scene() -> Scene {
     let mut glb = Glb::new();
-    let texels: Vec<[u8; 4]> = (0..64u8)
-        .map(|i| [i.wrapping_mul(37), i.wrapping_mul(91), 255 - i, 90 + i * 2])
-        .collect();
-    let color = glb.texture(8, 8, &texels);
-    let bumps: Vec<[u8; 4]> = (0..64u8).map(|i| [100 + i, 160 - i, 250, 255]).collect();
-    let normal = glb.texture(8, 8, &bumps);
-    for (mode, x) in [("OPAQUE", -1.5), ("MASK", 0.0), ("BLEND", 1.5)] {
-        let material = glb.push(
-            "materials",
-            json!({
-                "pbrMetallicRoughness": {
-                    "baseColorTexture": { "index": color }, "metallicFactor": 0.3, "roughnessFactor": 0.4,
-                },
-                "normalTexture": { "index": normal },
-                "alphaMode": mode, "alphaCutoff": 0.7, "doubleSided": true,
-            }),
-        );
-        let node = glb.quad(0.0, material);
+    for (node, x) in glb
+        .quads_of_three_modes(90)
+        .into_iter()
+        .zip([-1.5, 0.0, 1.5])
+    {
         glb.json["nodes"][node]["translation"] = json!([x, 0.1 * x, -x]);
         glb.json["nodes"][node]["rotation"] = json!([0.1, 0.3, 0.05, 0.9]);
     }
