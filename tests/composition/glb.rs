@@ -140,7 +140,6 @@ impl Glb {
         }))
     }
 
-    /// Appends an unlit material of one colour.
     /// Quads of a base colour and a normal map, one opaque, one masked and one blended; returns their nodes.
     ///
     /// `least_alpha`: of the base colour's first texel.
@@ -169,6 +168,7 @@ impl Glb {
         })
     }
 
+    /// Appends an unlit material of one colour.
     pub(crate) fn unlit(&mut self, color: [f32; 4]) -> usize {
         self.push(
             "materials",

@@ -5,7 +5,7 @@ use fearless_simd::{Simd, f32x16, u32x16};
 
 /// Each lane four times: packet `g` holds lanes 4g to 4g + 3, each beside itself.
 #[inline(always)]
-pub fn repeated<S: Simd>(values: u32x16<S>) -> [u32x16<S>; 4] {
+pub(super) fn repeated<S: Simd>(values: u32x16<S>) -> [u32x16<S>; 4] {
     let (low, high) = (values.zip_low(values), values.zip_high(values));
     [
         low.zip_low(low),
@@ -17,7 +17,7 @@ pub fn repeated<S: Simd>(values: u32x16<S>) -> [u32x16<S>; 4] {
 
 /// [`repeated`] of floats.
 #[inline(always)]
-pub(crate) fn repeated_floats<S: Simd>(values: f32x16<S>) -> [f32x16<S>; 4] {
+pub(super) fn repeated_floats<S: Simd>(values: f32x16<S>) -> [f32x16<S>; 4] {
     let (low, high) = (values.zip_low(values), values.zip_high(values));
     [
         low.zip_low(low),

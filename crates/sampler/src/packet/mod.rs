@@ -25,7 +25,7 @@ mod sheet;
 mod sums;
 
 pub use axis::{fold, held, unit};
-pub use lanes::{channels, repeated};
+pub use lanes::channels;
 pub use sheet::{Sheet, SheetTexels};
 pub use sums::{ONE, SUMS8_MAX_ERROR, Share, Sums, Sums8, Sums16, SumsFloat, codes};
 
