@@ -15,8 +15,31 @@ pub struct Bins {
     items: Vec<u32>,
 }
 
+/// A triangle, by the caller's number, in a tile that it may touch.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Touch {
+    /// Number of the tile in its grid.
+    pub tile: u32,
+    /// The caller's number of the triangle.
+    pub triangle: u32,
+}
+
+impl Touch {
+    /// Appends a triangle, under the number `number`, for each tile of `grid` that it may touch: always for one that it
+    /// covers a sample of, and never for one beyond its bounding box.
+    pub fn append(grid: &TileGrid, number: u32, triangle: &Triangle, out: &mut Vec<Self>) {
+        let positions = triangle.corners().positions;
+        for_each_tile(grid, &positions, &SampleExtent::PIXEL, |tile| {
+            out.push(Self {
+                tile,
+                triangle: number,
+            });
+        });
+    }
+}
+
 impl Bins {
-    /// Sorts `triangles` into the tiles of `grid`.
+    /// Sorts `triangles` into the tiles of `grid`, under their indices.
     ///
     /// A list may hold a triangle that covers no sample of its tile; it never lacks one that does.
     ///
@@ -24,39 +47,49 @@ impl Bins {
     /// If there are 2³² triangles or more.
     #[must_use]
     pub fn build(grid: &TileGrid, triangles: &[Triangle]) -> Self {
-        let mut touched: Vec<(u32, u32)> = Vec::with_capacity(triangles.len());
-        for (index, triangle) in (0u32..).zip(triangles) {
-            for_each_tile(
-                grid,
-                &triangle.corners().positions,
-                &SampleExtent::PIXEL,
-                |tile| touched.push((tile, index)),
-            );
-        }
         assert!(
             u32::try_from(triangles.len()).is_ok(),
             "too many triangles for one set of bins"
         );
-
-        // Count, sum up, place: the order within a tile stays that of submission.
-        let mut starts = vec![0; grid.count() + 1];
-        for &(tile, _) in &touched {
-            starts[tile as usize + 1] += 1;
+        let mut touched = Vec::with_capacity(triangles.len());
+        for (index, triangle) in (0u32..).zip(triangles) {
+            Touch::append(grid, index, triangle, &mut touched);
         }
-        for tile in 0..grid.count() {
-            starts[tile + 1] += starts[tile];
-        }
-        let mut items = vec![0; touched.len()];
-        let mut next = starts.clone();
-        for (tile, index) in touched {
-            let place = &mut next[tile as usize];
-            items[*place] = index;
-            *place += 1;
-        }
-        Self { starts, items }
+        let mut bins = Self::default();
+        bins.refill(grid, [touched.as_slice()].into_iter());
+        bins
     }
 
-    /// Indices of the triangles that may touch a tile, ascending.
+    /// Sorts what triangles touch into the tiles of `grid`, in the memory of what was held before. Within a tile the
+    /// order stays that of the lists.
+    ///
+    /// # Panics
+    /// If a list names a tile that the grid has not.
+    pub fn refill<'a>(
+        &mut self,
+        grid: &TileGrid,
+        lists: impl Iterator<Item = &'a [Touch]> + Clone,
+    ) {
+        // Count, sum up, place. One place too far on, so that placing moves each start to its own.
+        let tiles = grid.count();
+        self.starts.clear();
+        self.starts.resize(tiles + 2, 0);
+        for touch in lists.clone().flatten() {
+            self.starts[touch.tile as usize + 2] += 1;
+        }
+        for tile in 2..tiles + 2 {
+            self.starts[tile] += self.starts[tile - 1];
+        }
+        self.items.resize(self.starts[tiles + 1], 0);
+        for touch in lists.flatten() {
+            let place = &mut self.starts[touch.tile as usize + 1];
+            self.items[*place] = touch.triangle;
+            *place += 1;
+        }
+        self.starts.truncate(tiles + 1);
+    }
+
+    /// Numbers of the triangles that may touch a tile, in the order they were submitted.
     ///
     /// # Panics
     /// If the grid has no such tile.

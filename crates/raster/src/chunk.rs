@@ -75,10 +75,9 @@ pub(crate) struct Target<'a> {
     pub(crate) extent: &'a SampleExtent,
 }
 
-/// Sixteen triangles: corner by corner a column and a row each.
+/// Sixteen triangles: corner by corner their places on the screen.
 struct PacketCorners {
-    x: [[i32; LANES]; 3],
-    y: [[i32; LANES]; 3],
+    positions: [[[i32; 2]; LANES]; 3],
     /// Lanes that must be clipped.
     clipped: u32,
     /// Lanes that are all beyond one plane.
@@ -124,8 +123,15 @@ impl Chunk {
     ) {
         self.clear();
         let mut source = part.first_source;
-        for packet in part.triangles.chunks(LANES) {
-            let corners = PacketCorners::gather(target.vertices, part.first_vertex, packet);
+        let mut packets = part.triangles.chunks(LANES);
+        // Gathered one ahead: what was just written lane by lane is slow to be read as a whole.
+        let (vertices, first) = (target.vertices, part.first_vertex);
+        let mut next = packets.next();
+        let mut ahead = PacketCorners::gather(vertices, first, next.unwrap_or_default());
+        while let Some(packet) = next {
+            let corners = ahead;
+            next = packets.next();
+            ahead = PacketCorners::gather(vertices, first, next.unwrap_or_default());
             let test = corners.test(simd, target, part.cull);
             let mut left = (test.kept | corners.clipped) & !corners.outside;
             while left != 0 {
@@ -164,7 +170,7 @@ impl Chunk {
             self.touched.push((tile, item));
             return;
         }
-        let positions = [0, 1, 2].map(|k| [corners.x[k][lane], corners.y[k][lane]]);
+        let positions = corners.positions.map(|lanes| lanes[lane]);
         touch_all(target, &positions, item, &mut self.touched);
     }
 
@@ -241,38 +247,40 @@ impl PacketCorners {
     #[inline(always)]
     fn gather(vertices: &[ScreenVertex], first: u32, triangles: &[[u32; 3]]) -> Self {
         let mut corners = Self {
-            x: [[0; LANES]; 3],
-            y: [[0; LANES]; 3],
+            positions: [[[0; 2]; LANES]; 3],
             clipped: 0,
             outside: 0,
         };
+        let mut flags = 0;
         for (lane, triangle) in triangles.iter().enumerate() {
-            let [a, b, c] = three(
-                #[inline(always)]
-                |k| &vertices[(triangle[k] + first) as usize],
-            );
-            let all = a.flags & b.flags & c.flags & BEYOND;
-            let any = (a.flags | b.flags | c.flags) & CLIPPED;
-            corners.outside |= u32::from(all != 0) << lane;
-            corners.clipped |= u32::from(any != 0) << lane;
-            for (k, vertex) in [a, b, c].into_iter().enumerate() {
-                corners.x[k][lane] = vertex.position[0];
-                corners.y[k][lane] = vertex.position[1];
+            for k in 0..3 {
+                let vertex = &vertices[(triangle[k] + first) as usize];
+                corners.positions[k][lane] = vertex.position;
+                flags |= vertex.flags;
             }
         }
+        if flags != 0 {
+            corners.flag(vertices, first, triangles);
+        }
         corners
+    }
+
+    /// Notes which lanes have to be clipped and which are beyond one plane.
+    #[cold]
+    fn flag(&mut self, vertices: &[ScreenVertex], first: u32, triangles: &[[u32; 3]]) {
+        for (lane, triangle) in triangles.iter().enumerate() {
+            let [a, b, c] = triangle.map(|v| vertices[(v + first) as usize].flags);
+            self.outside |= u32::from(a & b & c & BEYOND != 0) << lane;
+            self.clipped |= u32::from((a | b | c) & CLIPPED != 0) << lane;
+        }
     }
 
     /// Which have an area, the side that is asked for, and a sample of the target in their bounding box.
     #[inline(always)]
     fn test<S: Simd>(&self, simd: S, target: &Target<'_>, cull: Cull) -> PacketTest {
-        let [ax, bx, cx] = three(
+        let [(ax, ay), (bx, by), (cx, cy)] = three(
             #[inline(always)]
-            |k| i32x16::from_slice(simd, &self.x[k]),
-        );
-        let [ay, by, cy] = three(
-            #[inline(always)]
-            |k| i32x16::from_slice(simd, &self.y[k]),
+            |k| columns_and_rows(simd, &self.positions[k]),
         );
         let low = [ax.min(bx).min(cx), ay.min(by).min(cy)];
         let high = [ax.max(bx).max(cx), ay.max(by).max(cy)];
@@ -322,14 +330,22 @@ impl PacketCorners {
     #[cold]
     fn facing(&self, cull: Cull) -> u64 {
         (0..LANES).fold(0, |kept, lane| {
-            let side = |axis: &[[i32; LANES]; 3], k: usize| {
-                i64::from(axis[k][lane]) - i64::from(axis[0][lane])
-            };
-            let area = side(&self.x, 1) * side(&self.y, 2) - side(&self.y, 1) * side(&self.x, 2);
+            let [a, b, c] = self.positions.map(|lanes| lanes[lane].map(i64::from));
+            let area = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
             let keep = area < 0 || (area > 0 && cull == Cull::None);
             kept | u64::from(keep) << lane
         })
     }
+}
+
+/// The two numbers of sixteen places.
+#[inline(always)]
+pub(crate) fn columns_and_rows<S: Simd>(
+    simd: S,
+    places: &[[i32; 2]; LANES],
+) -> (i32x16<S>, i32x16<S>) {
+    let (low, high) = places.as_flattened().split_at(LANES);
+    i32x16::from_slice(simd, low).deinterleave(i32x16::from_slice(simd, high))
 }
 
 #[allow(clippy::cast_possible_truncation, reason = "16 lanes have 16 bits")]

@@ -2,10 +2,13 @@
 
 use fearless_simd::{Level, Simd, dispatch};
 use glam::{DVec3, DVec4};
+use texcoord::packet::LANES;
 use texcoord::unrolled::three;
 
+use crate::batch::Batch;
 use crate::chunk::{CHUNK_TRIANGLES, Chunk, MeshPart, PIECE, Target, corners_of};
 use crate::samples::SampleExtent;
+use crate::setup::Corners;
 use crate::tile::TileGrid;
 use crate::vertex::ScreenVertex;
 use crate::{Error, SamplePattern, VisibilityTile};
@@ -172,13 +175,32 @@ impl Frame {
         items: &[u32],
         visibility: &mut VisibilityTile,
     ) {
-        for &item in items {
-            let corners = if item & PIECE == 0 {
-                corners_of(&self.vertices, &chunk.wholes[item as usize])
-            } else {
-                chunk.pieces[(item ^ PIECE) as usize].triangle.corners()
-            };
-            visibility.draw_corners(simd, number << ITEM_BITS | item, &corners);
+        if visibility.pattern().count() > 1 {
+            for &item in items {
+                visibility.draw_corners(
+                    simd,
+                    number << ITEM_BITS | item,
+                    &self.corners(chunk, item),
+                );
+            }
+            return;
+        }
+        let mut batch = Batch::new();
+        for items in items.chunks(LANES) {
+            batch.clear();
+            for &item in items {
+                batch.push(number << ITEM_BITS | item, &self.corners(chunk, item));
+            }
+            visibility.draw_batch(simd, &mut batch);
+        }
+    }
+
+    #[inline(always)]
+    fn corners(&self, chunk: &Chunk, item: u32) -> Corners {
+        if item & PIECE == 0 {
+            corners_of(&self.vertices, &chunk.wholes[item as usize])
+        } else {
+            chunk.pieces[(item ^ PIECE) as usize].triangle.corners()
         }
     }
 

@@ -75,6 +75,7 @@
 #![forbid(unsafe_code)]
 
 mod assemble;
+mod batch;
 mod bins;
 mod buffer;
 mod chunk;
@@ -98,7 +99,7 @@ mod viewport;
 mod visibility;
 
 pub use assemble::{Assembly, Cull, assemble_triangle};
-pub use bins::Bins;
+pub use bins::{Bins, Touch};
 pub use chunk::{CHUNK_TRIANGLES, Chunk, MeshPart};
 pub use error::Error;
 pub use frame::{Assembler, Frame, MAX_CHUNKS, Surface};

@@ -4,6 +4,7 @@ use fearless_simd::{Level, Simd, dispatch, prelude::*};
 use glam::UVec2;
 use texcoord::packet::LANES;
 
+use crate::batch::Batch;
 use crate::buffer::{NOBODY, SampleBuffer};
 use crate::depth::DepthPlane;
 use crate::layer::Layer;
@@ -284,6 +285,24 @@ impl VisibilityTile {
             return;
         }
         self.draw_large(simd, owner, &setup, setup.plane(corners.depth));
+    }
+
+    /// Draws the opaque surfaces of a batch, as if one by one.
+    #[inline(always)]
+    pub(crate) fn draw_batch<S: Simd>(&mut self, simd: S, batch: &mut Batch) {
+        if self.layer.is_none() {
+            let origin = self.rect.min.to_array();
+            let origin = origin.map(|k| signed(k as usize) * SUBPIXELS);
+            let (size, positions) = (self.size(), self.pattern.positions());
+            let (extent, buffer) = (&self.extent, &mut self.buffer);
+            if let Some(nearest) = batch.draw(simd, origin, size, extent, positions, buffer) {
+                self.nearest = self.nearest.max(nearest);
+                return;
+            }
+        }
+        for (owner, corners) in batch.triangles() {
+            self.draw_corners(simd, owner, &corners);
+        }
     }
 
     /// Draws a surface of any size.
