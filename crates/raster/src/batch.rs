@@ -6,7 +6,7 @@
 //!
 //! For one sample a pixel; with more, one triangle has enough samples to fill packets of its own.
 
-use fearless_simd::{Simd, f32x16, i32x16, mask32x16, prelude::*};
+use fearless_simd::{Simd, f32x16, i32x16, mask32x16, prelude::*, u32x16};
 use glam::IVec2;
 use texcoord::packet::{F64x16, LANES};
 use texcoord::unrolled::{three, two};
@@ -15,11 +15,14 @@ use crate::buffer::SampleBuffer;
 use crate::chunk::columns_and_rows;
 use crate::samples::SampleExtent;
 use crate::scan::index;
-use crate::setup::{Corners, SMALL_SIDE, SMALL_WINDOW};
+use crate::setup::Corners;
 use crate::viewport::SUBPIXELS;
 
-/// Pixels of the largest window.
-const WINDOW: usize = (SMALL_WINDOW * SMALL_WINDOW) as usize;
+/// Longest side, in units, of a triangle whose edge values fit the integers of f32 around it.
+const LONGEST: i32 = 7 * SUBPIXELS;
+
+/// Most pixels of the windows of a batch: a bit each.
+const WINDOW: usize = 64;
 
 /// Corners of up to 16 triangles, corner by corner a lane each.
 pub(crate) struct Batch {
@@ -64,7 +67,7 @@ struct Depths<S: Simd> {
 /// What is covered of one sample in every pixel of the windows.
 struct Covered {
     /// The pixels that a lane covers, a bit each.
-    pixels: [i32; LANES],
+    pixels: [[u32; LANES]; 2],
     /// Depths there, pixel by pixel.
     depths: [[f32; LANES]; WINDOW],
 }
@@ -77,7 +80,7 @@ impl Batch {
             owners: [0; LANES],
             count: 0,
             covered: Covered {
-                pixels: [0; LANES],
+                pixels: [[0; LANES]; 2],
                 depths: [[0.0; LANES]; WINDOW],
             },
         }
@@ -173,10 +176,7 @@ impl Batch {
         let used = lanes.simd_lt(lane_number(self.count));
         let open = used & size[0].simd_gt(0) & size[1].simd_gt(0);
         let longest = (high[0] - low[0]).max(high[1] - low[1]);
-        let large = longest.simd_gt(SMALL_SIDE)
-            | size[0].simd_gt(SMALL_WINDOW)
-            | size[1].simd_gt(SMALL_WINDOW);
-        if (open & large).any_true() {
+        if (open & longest.simd_gt(LONGEST)).any_true() {
             return None;
         }
         let zero = i32x16::splat(simd, 0);
@@ -187,7 +187,8 @@ impl Batch {
                 sizes.into_iter().fold(0, i32::max)
             },
         );
-        Some(Windows {
+        let fits = index(largest[0] * largest[1]) <= WINDOW;
+        fits.then_some(Windows {
             min,
             size,
             open,
@@ -208,7 +209,7 @@ impl Batch {
         let mut nearest = f32::NEG_INFINITY;
         let Covered { pixels, depths } = &self.covered;
         for lane in 0..LANES {
-            let mut left = pixels[lane];
+            let mut left = u64::from(pixels[0][lane]) | u64::from(pixels[1][lane]) << 32;
             while left != 0 {
                 let pixel = left.trailing_zeros() as usize % WINDOW;
                 left &= left - 1;
@@ -279,8 +280,8 @@ impl<S: Simd> Edges<S> {
         position: IVec2,
         found: &mut Covered,
     ) -> bool {
-        let none = i32x16::splat(simd, 0);
-        let (mut pixels, mut pixel) = (none, 0);
+        let none = u32x16::splat(simd, 0);
+        let (mut pixels, mut pixel) = ([none; 2], 0);
         for row in 0..windows.largest[1] {
             for column in 0..windows.largest[0] {
                 let x = (column * SUBPIXELS + position.x) as f32;
@@ -297,13 +298,15 @@ impl<S: Simd> Edges<S> {
                     & windows.size[1].simd_gt(row);
                 if inside.any_true() {
                     depths.at(b, c).store_slice(&mut found.depths[pixel]);
-                    pixels |= inside.select(i32x16::splat(simd, 1 << pixel), none);
+                    pixels[pixel / 32] |=
+                        inside.select(u32x16::splat(simd, 1 << (pixel % 32)), none);
                 }
                 pixel += 1;
             }
         }
-        pixels.store_slice(&mut found.pixels);
-        pixels.simd_gt(0).any_true()
+        pixels[0].store_slice(&mut found.pixels[0]);
+        pixels[1].store_slice(&mut found.pixels[1]);
+        !(pixels[0] | pixels[1]).simd_eq(0).all_true()
     }
 }
 

@@ -10,7 +10,7 @@ use crate::viewport::SUBPIXELS;
 const UNIT: i64 = SUBPIXELS as i64;
 
 /// Longest side, in units, of a triangle whose edge values fit the integers of f32 around it.
-pub(crate) const SMALL_SIDE: i32 = 5 * SUBPIXELS;
+const SMALL_SIDE: i32 = 5 * SUBPIXELS;
 
 /// Sides of the window that a small triangle is drawn through, in pixels.
 pub(crate) const SMALL_WINDOW: i32 = 4;

@@ -1,7 +1,7 @@
 use std::collections::VecDeque;
 
 use glam::UVec2;
-use sampler::{Component, Texture};
+use sampler::{Component, Texels, Texture};
 
 use super::box_filter::{self, Arithmetic, Averaging, Method, halved};
 use super::cascade::{self, Cascade};
@@ -204,24 +204,25 @@ impl Reduction {
 
     /// A level as it is kept: in the format of level 0.
     pub(crate) fn store(&self, size: UVec2, linear: &[f32]) -> Texture {
-        let channels = self.method.channels;
-        let mut linear = std::borrow::Cow::Borrowed(linear);
-        if let Some(range) = &self.range
-            && self.options.negative_lobes == NegativeLobes::Clamp
-        {
-            for texel in linear.to_mut().chunks_exact_mut(channels) {
-                for (c, value) in texel.iter_mut().enumerate() {
-                    *value = range.hold(c, *value);
-                }
+        let held = match self.options.negative_lobes {
+            NegativeLobes::Clamp => self.range,
+            NegativeLobes::Keep => None,
+        };
+        let is_finished = held.is_none() && !matches!(self.content, Content::Roughness { .. });
+        let finish = |rows: &mut [f32]| {
+            if let Some(range) = &held {
+                range.hold_row(self.method.channels, rows);
             }
-        }
-        if let Content::Roughness { .. } = self.content {
-            self.finish_row(linear.to_mut());
-        }
+            self.finish_row(rows);
+        };
+        let schedule = self.options.schedule;
         if let Some((cutoff, share)) = self.coverage {
-            cutoff.keep(share, size.x as usize, self.format, linear.to_mut());
+            let mut linear = linear.to_vec();
+            finish(&mut linear);
+            cutoff.keep(share, size.x as usize, self.format, &mut linear);
+            return schedule.store(size, self.format, &linear, None::<fn(&mut [f32])>);
         }
-        self.options.schedule.store(size, self.format, &linear)
+        schedule.store(size, self.format, linear, (!is_finished).then_some(finish))
     }
 
     fn reduce_rows(
@@ -247,6 +248,21 @@ impl Reduction {
     fn range_of(&self, texture: &Texture) -> Range {
         let channels = self.method.channels;
         let weighted = self.method.averaging == Averaging::AlphaWeighted;
+        let plain = !weighted && !matches!(self.content, Content::Roughness { .. });
+        if let (true, Texels::U8(codes)) = (plain, texture.texels()) {
+            // Decoding is monotonic: the extreme codes are the extreme values.
+            return Range::of_codes(channels, codes, |codes, values| {
+                let texel = Texture::new(
+                    UVec2::ONE,
+                    self.format.channels,
+                    self.format.transfer,
+                    Texels::U8(codes.to_vec()),
+                );
+                texel
+                    .expect("a texel of the texture's own format")
+                    .decode_row(0, values);
+            });
+        }
         Range::of_rows(
             texture.size(),
             channels,

@@ -46,6 +46,55 @@ impl Range {
         }
     }
 
+    /// The range of 8-bit texels. `decode`: from the codes of a texel to its values, monotonic in each channel.
+    pub(super) fn of_codes(
+        channels: usize,
+        codes: &[u8],
+        decode: impl Fn(&[u8], &mut [f32]),
+    ) -> Self {
+        // Runs of whole texels, for each number of channels, as wide as many registers.
+        const RUN: usize = 3 * 64;
+        let mut least = [u8::MAX; RUN];
+        let mut greatest = [0; RUN];
+        let (runs, rest) = codes.as_chunks::<RUN>();
+        for run in runs {
+            for k in 0..RUN {
+                least[k] = least[k].min(run[k]);
+                greatest[k] = greatest[k].max(run[k]);
+            }
+        }
+        for (k, &code) in rest.iter().enumerate() {
+            least[k] = least[k].min(code);
+            greatest[k] = greatest[k].max(code);
+        }
+        let mut range = Self::NOTHING;
+        let mut extremes = [[u8::MAX; 4], [0; 4]];
+        for k in 0..RUN {
+            let c = k % channels;
+            extremes[0][c] = extremes[0][c].min(least[k]);
+            extremes[1][c] = extremes[1][c].max(greatest[k]);
+        }
+        decode(&extremes[0][..channels], &mut range.least[..channels]);
+        decode(&extremes[1][..channels], &mut range.greatest[..channels]);
+        range
+    }
+
+    /// Texels of `channels` values, each [held](Self::hold).
+    pub(super) fn hold_row(&self, channels: usize, row: &mut [f32]) {
+        match channels {
+            1 => self.hold_texels::<1>(row),
+            2 => self.hold_texels::<2>(row),
+            3 => self.hold_texels::<3>(row),
+            _ => self.hold_texels::<4>(row),
+        }
+    }
+
+    fn hold_texels<const N: usize>(&self, row: &mut [f32]) {
+        for texel in row.as_chunks_mut::<N>().0 {
+            *texel = core::array::from_fn(|c| self.hold(c, texel[c]));
+        }
+    }
+
     /// `value`, no less and no more than the channel's range; NaN stays NaN.
     pub(super) fn hold(&self, channel: usize, value: f32) -> f32 {
         if value < self.least[channel] {

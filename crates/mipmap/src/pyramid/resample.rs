@@ -1,7 +1,7 @@
-//! One level from the level before by a wide kernel: along the rows, then down the columns, in f64.
+//! One level from the level before by a wide kernel: down the columns, then along the row, in f64.
 //!
-//! Each row of the finer level is decoded and filtered along itself once, and kept until the last output row that
-//! reaches it is done: a kernel of radius 3 reaches a row from six of them.
+//! Each row of the finer level is decoded once and kept until the last output row that reaches it is done: a kernel of
+//! radius 3 reaches a row from six of them. Going down first leaves half as many rows to go along.
 
 use fearless_simd::{Level, Simd, dispatch};
 use glam::UVec2;
@@ -54,11 +54,17 @@ impl Wide {
             .chunks_mut(out_length * ROWS_A_STRIP)
             .enumerate()
             .collect();
-        let scratch = || Scratch {
-            decoded: vec![0.0; size.x as usize * channels],
-            spread: vec![0.0; size.x as usize * self.spread()],
-            kept: Kept::new(most_rows.unwrap_or(0), target.x as usize * self.spread()),
-            sums: vec![0.0; target.x as usize * self.spread()],
+        let scratch = || {
+            let (rows, length) = (most_rows.unwrap_or(0), size.x as usize * self.spread());
+            Scratch {
+                decoded: vec![0.0; size.x as usize * channels],
+                rows: match self.method.averaging {
+                    Averaging::Independent => Rows::AsTheyAre(Kept::new(rows, length)),
+                    Averaging::AlphaWeighted => Rows::Spread(Kept::new(rows, length)),
+                },
+                sums: vec![0.0; length],
+                filtered: vec![0.0; target.x as usize * self.spread()],
+            }
         };
         schedule.for_each(strips, scratch, |scratch, (strip, out)| {
             for (j, row) in (strip * ROWS_A_STRIP..).zip(out.chunks_exact_mut(out_length)) {
@@ -76,14 +82,8 @@ impl Wide {
         }
     }
 
-    /// Each texel as it is, or as colour times alpha, alpha and colour.
+    /// Each texel as colour times alpha, alpha and colour.
     fn spread_row(&self, row: &[f32], out: &mut [f64]) {
-        if self.method.averaging == Averaging::Independent {
-            for (out, &value) in out.iter_mut().zip(row) {
-                *out = f64::from(value);
-            }
-            return;
-        }
         let colours = self.method.channels - 1;
         for (out, texel) in out
             .chunks_exact_mut(self.spread())
@@ -103,13 +103,19 @@ impl Wide {
         }
     }
 
-    fn finish(&self, sums: &[f64], texel: &mut [f32]) {
+    /// Rounds sums; of colour that alpha weighted first divides it out.
+    fn finish_row(&self, level: Level, sums: &[f64], row: &mut [f32]) {
         if self.method.averaging == Averaging::Independent {
-            for (value, &sum) in texel.iter_mut().zip(sums) {
-                *value = round_to_f32(sum);
-            }
+            dispatch!(level, simd => round_all(simd, sums, row));
             return;
         }
+        let texels = row.chunks_exact_mut(self.method.channels);
+        for (texel, sums) in texels.zip(sums.chunks_exact(self.spread())) {
+            self.finish(sums, texel);
+        }
+    }
+
+    fn finish(&self, sums: &[f64], texel: &mut [f32]) {
         let colours = texel.len() - 1;
         let alpha = round_to_f32(sums[colours].max(0.0));
         for (c, value) in texel[..colours].iter_mut().enumerate() {
@@ -121,6 +127,18 @@ impl Wide {
         }
         texel[colours] = alpha;
     }
+}
+
+#[inline(always)]
+fn round_all<S: Simd>(simd: S, sums: &[f64], row: &mut [f32]) {
+    simd.vectorize(
+        #[inline(always)]
+        || {
+            for (value, &sum) in row.iter_mut().zip(sums) {
+                *value = round_to_f32(sum);
+            }
+        },
+    );
 }
 
 /// One level on its way.
@@ -135,42 +153,48 @@ struct Pass<'a, F> {
 /// What a worker keeps from strip to strip.
 struct Scratch {
     decoded: Vec<f32>,
-    spread: Vec<f64>,
-    kept: Kept,
+    rows: Rows,
+    /// A row that was summed down the columns, and what is left of it after going along.
     sums: Vec<f64>,
+    filtered: Vec<f64>,
+}
+
+/// Rows of the finer level.
+enum Rows {
+    /// Where channels are independent.
+    AsTheyAre(Kept<f32>),
+    /// Where alpha weights colour.
+    Spread(Kept<f64>),
 }
 
 impl<F: Fn(u32, &mut [f32])> Pass<'_, F> {
     /// Output row j.
     fn row(&self, scratch: &mut Scratch, j: usize, out: &mut [f32]) {
-        let taps = self.down.row(j);
-        let mut rows = Vec::with_capacity(taps.len());
-        for tap in taps {
-            let place = scratch.kept.place(tap.column);
-            if place.is_new {
-                (self.read_row)(
-                    u32::try_from(tap.column).unwrap_or(u32::MAX),
-                    &mut scratch.decoded,
-                );
-                self.wide.spread_row(&scratch.decoded, &mut scratch.spread);
-                let filtered = scratch.kept.row_mut(place.index);
-                dispatch!(self.level, simd => {
-                    filter_along(simd, &self.across, self.wide.spread(), &scratch.spread, filtered);
-                });
+        let (level, taps) = (self.level, self.down.row(j));
+        let number = |row: usize| u32::try_from(row).unwrap_or(u32::MAX);
+        let sums = &mut scratch.sums;
+        match &mut scratch.rows {
+            Rows::AsTheyAre(kept) => {
+                let rows = kept.rows(taps, |row, values| (self.read_row)(number(row), values));
+                dispatch!(level, simd => sum_down(simd, kept, &rows, sums));
             }
-            rows.push((place.index, tap.weight));
+            Rows::Spread(kept) => {
+                let rows = kept.rows(taps, |row, values| {
+                    (self.read_row)(number(row), &mut scratch.decoded);
+                    self.wide.spread_row(&scratch.decoded, values);
+                });
+                dispatch!(level, simd => sum_down(simd, kept, &rows, sums));
+            }
         }
-        dispatch!(self.level, simd => sum_down(simd, &scratch.kept, &rows, &mut scratch.sums));
-        let texels = out.chunks_exact_mut(self.wide.method.channels);
-        for (texel, sums) in texels.zip(scratch.sums.chunks_exact(self.wide.spread())) {
-            self.wide.finish(sums, texel);
-        }
+        let (spread, filtered) = (self.wide.spread(), &mut scratch.filtered);
+        dispatch!(level, simd => filter_along(simd, &self.across, spread, sums, filtered));
+        self.wide.finish_row(level, filtered, out);
     }
 }
 
-/// Filtered rows, as many as one output row reads; the one that was asked for longest ago makes room.
-struct Kept {
-    values: Vec<f64>,
+/// Rows, as many as one output row reads; the one that was asked for longest ago makes room.
+struct Kept<T> {
+    values: Vec<T>,
     length: usize,
     /// The row that each place holds, and when it was asked for last.
     holds: Vec<(usize, usize)>,
@@ -183,14 +207,28 @@ struct KeptAt {
     is_new: bool,
 }
 
-impl Kept {
+impl<T: Copy + Default> Kept<T> {
     fn new(rows: usize, length: usize) -> Self {
         Self {
-            values: vec![0.0; rows * length],
+            values: vec![T::default(); rows * length],
             length,
             holds: vec![(usize::MAX, 0); rows],
             now: 0,
         }
+    }
+
+    /// Places and weights of the rows that an output row reads; `fill` makes those that are not kept.
+    fn rows(&mut self, taps: &[Entry], mut fill: impl FnMut(usize, &mut [T])) -> Vec<(usize, f64)> {
+        let mut rows = Vec::with_capacity(taps.len());
+        for tap in taps {
+            let place = self.place(tap.column);
+            if place.is_new {
+                let values = &mut self.values[place.index * self.length..][..self.length];
+                fill(tap.column, values);
+            }
+            rows.push((place.index, tap.weight));
+        }
+        rows
     }
 
     fn place(&mut self, row: usize) -> KeptAt {
@@ -209,12 +247,8 @@ impl Kept {
         }
     }
 
-    fn row(&self, index: usize) -> &[f64] {
+    fn row(&self, index: usize) -> &[T] {
         &self.values[index * self.length..][..self.length]
-    }
-
-    fn row_mut(&mut self, index: usize) -> &mut [f64] {
-        &mut self.values[index * self.length..][..self.length]
     }
 }
 
@@ -244,19 +278,42 @@ fn along<const N: usize>(weights: &AxisWeights, row: &[f64], out: &mut [f64]) {
     let row = row.as_chunks::<N>().0;
     for (i, out) in out.as_chunks_mut::<N>().0.iter_mut().enumerate() {
         let mut sums = [0.0; N];
-        for &Entry { column, weight, .. } in weights.row(i) {
-            let texel = &row[column];
-            for c in 0..N {
-                sums[c] += texel[c] * weight;
+        let taps = weights.row(i);
+        let first = taps.first().map_or(0, |tap| tap.column);
+        // Columns ascend; away from the border none is left out.
+        match row.get(first..first + taps.len()) {
+            Some(texels)
+                if taps
+                    .last()
+                    .is_some_and(|tap| tap.column + 1 == first + taps.len()) =>
+            {
+                for (texel, tap) in texels.iter().zip(taps) {
+                    add(&mut sums, texel, tap.weight);
+                }
             }
+            _ => taps
+                .iter()
+                .for_each(|tap| add(&mut sums, &row[tap.column], tap.weight)),
         }
         *out = sums;
     }
 }
 
+#[inline(always)]
+fn add<const N: usize>(sums: &mut [f64; N], texel: &[f64; N], weight: f64) {
+    for c in 0..N {
+        sums[c] += texel[c] * weight;
+    }
+}
+
 /// The weighted sum of rows.
 #[inline(always)]
-fn sum_down<S: Simd>(simd: S, kept: &Kept, rows: &[(usize, f64)], out: &mut [f64]) {
+fn sum_down<S: Simd, T: Copy + Default + Into<f64>>(
+    simd: S,
+    kept: &Kept<T>,
+    rows: &[(usize, f64)],
+    out: &mut [f64],
+) {
     simd.vectorize(
         #[inline(always)]
         || {
@@ -264,13 +321,13 @@ fn sum_down<S: Simd>(simd: S, kept: &Kept, rows: &[(usize, f64)], out: &mut [f64
                 let mut sums = [0.0; BLOCK];
                 for &(index, weight) in rows {
                     let values = &kept.row(index)[block * BLOCK..][..out.len()];
-                    if let Ok(values) = <&[f64; BLOCK]>::try_from(values) {
-                        for (sum, value) in sums.iter_mut().zip(values) {
-                            *sum += value * weight;
+                    if let Ok(values) = <&[T; BLOCK]>::try_from(values) {
+                        for (sum, &value) in sums.iter_mut().zip(values) {
+                            *sum += value.into() * weight;
                         }
                     } else {
-                        for (sum, value) in sums.iter_mut().zip(values) {
-                            *sum += value * weight;
+                        for (sum, &value) in sums.iter_mut().zip(values) {
+                            *sum += value.into() * weight;
                         }
                     }
                 }

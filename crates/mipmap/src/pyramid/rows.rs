@@ -65,22 +65,39 @@ impl Schedule {
         }
     }
 
-    /// A texture of `format` from linear texels, each component to its nearest code.
-    pub(super) fn store(self, size: UVec2, format: Format, linear: &[f32]) -> Texture {
+    /// A texture of `format` from linear texels, each component to its nearest code. `finish` is called with a copy of
+    /// some rows and may change it; what comes out is stored.
+    pub(super) fn store(
+        self,
+        size: UVec2,
+        format: Format,
+        linear: &[f32],
+        finish: Option<impl Fn(&mut [f32]) + Sync>,
+    ) -> Texture {
+        let row_length = size.x as usize * usize::from(format.channels);
+        let strip = rows_worth_a_task(row_length) * row_length;
+        let store = |part: &[f32]| {
+            let rows = u32::try_from(part.len() / row_length).unwrap_or(u32::MAX);
+            let size = UVec2::new(size.x, rows);
+            match &finish {
+                None => stored(size, format, part),
+                Some(finish) => {
+                    let mut part = part.to_vec();
+                    finish(&mut part);
+                    stored(size, format, &part)
+                }
+            }
+        };
         match self {
-            Self::Serial => stored(size, format, linear),
+            Self::Serial if finish.is_none() => stored(size, format, linear),
+            Self::Serial => {
+                let strips: Vec<Texture> = linear.chunks(strip).map(store).collect();
+                joined(size, format, &strips)
+            }
             #[cfg(feature = "rayon")]
             Self::CurrentPool => {
                 use rayon::prelude::*;
-                let row_length = size.x as usize * usize::from(format.channels);
-                let strip = rows_worth_a_task(row_length) * row_length;
-                let strips: Vec<Texture> = linear
-                    .par_chunks(strip)
-                    .map(|part| {
-                        let rows = u32::try_from(part.len() / row_length).unwrap_or(u32::MAX);
-                        stored(UVec2::new(size.x, rows), format, part)
-                    })
-                    .collect();
+                let strips: Vec<Texture> = linear.par_chunks(strip).map(store).collect();
                 joined(size, format, &strips)
             }
         }
@@ -93,13 +110,11 @@ fn stored(size: UVec2, format: Format, linear: &[f32]) -> Texture {
 }
 
 /// Rows of about 2¹⁴ components together: a task of some 10 µs, against 0.1 µs to hand it over.
-#[cfg(feature = "rayon")]
 fn rows_worth_a_task(row_length: usize) -> usize {
     (1 << 14) / row_length + 1
 }
 
 /// Strips of rows, one below the other, as one texture.
-#[cfg(feature = "rayon")]
 fn joined(size: UVec2, format: Format, strips: &[Texture]) -> Texture {
     use sampler::Texels;
     macro_rules! gathered {
