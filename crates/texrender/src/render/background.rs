@@ -29,13 +29,7 @@ pub(super) fn background(
     };
     let size = rect.size();
     let pixels = size.x as usize * size.y as usize;
-    // Which samples of each pixel are covered; then the pixels where some are not.
-    let mut covered = vec![0u64; pixels];
-    for pair in &pairs.all[..pairs.visible] {
-        covered[pair.pixel as usize] |= pair.mask;
-    }
-    let open = (0..pixels).filter(|&pixel| covered[pixel] != full);
-    let open: Vec<usize> = open.collect();
+    let open = open_pixels(pairs, pixels, full);
     behind.resize(pixels, Vec4::ZERO);
     fearless_simd::dispatch!(settings.simd, simd => {
         for group in open.chunks(LANES) {
@@ -45,6 +39,26 @@ pub(super) fn background(
             }
         }
     });
+}
+
+/// The pixels of which not all samples are covered, in their order.
+fn open_pixels(pairs: &Pairs, pixels: usize, full: u64) -> Vec<usize> {
+    let mut open = Vec::new();
+    let (mut next, mut visible) = (0, pairs.all[..pairs.visible].iter().peekable());
+    while let Some(pair) = visible.next() {
+        let pixel = pair.pixel as usize;
+        open.extend(next..pixel);
+        let mut covered = pair.mask;
+        while let Some(also) = visible.next_if(|also| also.pixel == pair.pixel) {
+            covered |= also.mask;
+        }
+        if covered != full {
+            open.push(pixel);
+        }
+        next = pixel + 1;
+    }
+    open.extend(next..pixels);
+    open
 }
 
 /// The environment behind up to sixteen pixels of a tile.

@@ -34,38 +34,50 @@ pub(super) struct FilmTile {
 }
 
 impl FilmTile {
-    /// Empties it, with room for `pixels`.
-    pub(super) fn clear(&mut self, pixels: usize, plan: &Plan) {
+    /// Gives it `pixels` pixels that show what is behind everything, nothing where `behind` is empty.
+    pub(super) fn clear(&mut self, pixels: usize, behind: &[Vec4], plan: &Plan) {
         self.lit.clear();
-        self.lit.reserve(pixels);
-        self.aovs.clear();
+        self.lit.extend_from_slice(behind);
+        self.lit.resize(pixels, Vec4::ZERO);
         self.unlit = plan.has_unlit().then(|| {
             let mut unlit = self.unlit.take().unwrap_or_default();
             unlit.clear();
-            unlit.reserve(pixels);
+            unlit.resize(pixels, Vec4::ZERO);
             unlit
         });
+        self.aovs.clear();
+        let kept = &plan.settings.aovs;
+        if !kept.is_empty() {
+            for _ in 0..pixels {
+                let values = kept.iter().map(|&aov| channels(aov, Values::NOTHING));
+                values.for_each(|(values, count)| self.aovs.extend(&values[..count]));
+            }
+        }
         self.shaded = 0;
     }
 
-    /// Appends the values that a pixel keeps beside its colour.
-    pub(super) fn push_aovs(&mut self, aovs: &[Aov], values: Values) {
-        let Values {
-            depth,
-            normal: Vec3 { x, y, z },
-            st,
-            mip_level,
-            surface_id,
-        } = values;
-        for aov in aovs {
-            match aov {
-                Aov::Depth => self.aovs.push(depth),
-                Aov::Normal => self.aovs.extend([x, y, z]),
-                Aov::TextureCoordinate => self.aovs.extend([st.x, st.y]),
-                Aov::MipLevel => self.aovs.push(mip_level),
-                Aov::SurfaceId => self.aovs.push(surface_id),
-            }
+    /// Sets the values that the pixel `at` keeps beside its colour.
+    pub(super) fn set_aovs(&mut self, at: usize, aovs: &[Aov], values: Values) {
+        let pixel: usize = aovs.iter().map(|aov| aov.channels().len()).sum();
+        let mut rest = &mut self.aovs[at * pixel..];
+        for &aov in aovs {
+            let (values, count) = channels(aov, values);
+            let (own, after) = rest.split_at_mut(count);
+            own.copy_from_slice(&values[..count]);
+            rest = after;
         }
+    }
+}
+
+/// The channels of an AOV, and how many they are.
+fn channels(aov: Aov, values: Values) -> ([f32; 3], usize) {
+    let Vec3 { x, y, z } = values.normal;
+    match aov {
+        Aov::Depth => ([values.depth, 0.0, 0.0], 1),
+        Aov::Normal => ([x, y, z], 3),
+        Aov::TextureCoordinate => ([values.st.x, values.st.y, 0.0], 2),
+        Aov::MipLevel => ([values.mip_level, 0.0, 0.0], 1),
+        Aov::SurfaceId => ([values.surface_id, 0.0, 0.0], 1),
     }
 }
 

@@ -54,8 +54,8 @@ impl<'a> Frame<'a> {
     }
 
     /// The kernel of a draw.
-    pub(super) fn kernel_of(&self, draw: u32) -> usize {
-        self.plan.draws[draw as usize].kernel
+    pub(super) fn kernel_of(&self, draw: usize) -> usize {
+        self.plan.draws[draw].kernel
     }
 }
 

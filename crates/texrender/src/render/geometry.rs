@@ -2,7 +2,7 @@
 
 use glam::DVec4;
 use raster::{
-    Bins, Cull, SamplePattern, TILE_SIZE, TileGrid, Triangle, Viewport, assemble_line,
+    Bins, Cull, SamplePattern, TILE_SIZE, TileGrid, Touch, Triangle, Viewport, assemble_line,
     assemble_point, assemble_triangle,
 };
 use rayon::prelude::*;
@@ -10,89 +10,176 @@ use rayon::prelude::*;
 use crate::plan::{Coverage, Draw, Plan, Sidedness};
 use crate::scene::{Scene, Topology};
 
-/// Elements or vertices that one task takes.
-const CHUNK: usize = 4096;
+/// Vertices that one task takes.
+const VERTICES: usize = 4096;
 
-/// Triangles on the screen, sorted into tiles.
+/// Triangles on the screen, sorted into tiles. Keeps its memory from frame to frame.
+#[derive(Debug)]
 pub(super) struct Geometry {
     pub grid: TileGrid,
     pub pattern: SamplePattern,
-    /// Opaque, then masked, then blended. Their source is the index of the element in its draw.
-    pub triangles: Vec<Triangle>,
-    /// Draw of each triangle.
-    pub draw_of: Vec<u32>,
-    /// First of the masked and of the blended triangles.
+    /// Clip-space positions of the vertices of all draws.
+    clip: Vec<DVec4>,
+    /// Pieces of draws: opaque, then masked, then blended. Those beyond `used` are memory of other frames.
+    parts: Vec<Part>,
+    used: usize,
+    /// A triangle is named by its part and, in this many bits, its place there.
+    bits: u32,
+    bins: Bins,
+    /// First names of masked and of blended triangles.
     pub masked: u32,
     pub blended: u32,
-    pub bins: Bins,
     /// First element of each draw, counted over all draws.
     pub first_element: Vec<usize>,
     /// Elements of all draws.
     pub elements: usize,
 }
 
+/// Some elements of a draw and what they became on the screen.
+#[derive(Debug, Default)]
+struct Part {
+    draw: usize,
+    /// First element and first vertex of the draw.
+    start: usize,
+    first_vertex: usize,
+    /// Their source is the index of the element in its draw.
+    triangles: Vec<Triangle>,
+    touched: Vec<Touch>,
+}
+
+/// How large parts are: with very many draws small, so that 32 bits name all triangles.
+#[derive(Clone, Copy)]
+struct PartSize {
+    elements: usize,
+    /// Enough for what clipping leaves of so many: at most seven pieces of each.
+    bits: u32,
+}
+
+impl PartSize {
+    fn of(plan: &Plan) -> Self {
+        let (elements, bits) = if plan.draws.len() < 1 << 16 {
+            (4096, 15)
+        } else {
+            (64, 9)
+        };
+        Self { elements, bits }
+    }
+}
+
 impl Geometry {
-    pub(super) fn new(scene: &Scene, plan: &Plan) -> Self {
+    /// For frames of `plan`; holds nothing yet.
+    pub(super) fn new(plan: &Plan) -> Self {
         // The plan has checked both against their ranges.
         let viewport = Viewport::new(plan.settings.width, plan.settings.height)
             .expect("the plan checked the size");
         let pattern = SamplePattern::standard(plan.settings.samples)
             .expect("the plan checked the number of samples");
-        let grid = TileGrid::new(viewport, TILE_SIZE).expect("the tile size is a constant");
+        Self {
+            grid: TileGrid::new(viewport, TILE_SIZE).expect("the tile size is a constant"),
+            pattern,
+            clip: Vec::new(),
+            parts: Vec::new(),
+            used: 0,
+            bits: 0,
+            bins: Bins::default(),
+            masked: 0,
+            blended: 0,
+            first_element: Vec::new(),
+            elements: 0,
+        }
+    }
 
-        // Vertices, once each.
-        let clip: Vec<Vec<DVec4>> = plan
-            .draws
-            .par_iter()
-            .map(|draw| clip_positions(scene, plan, draw))
-            .collect();
+    /// Takes the draws of a plan, seen from its viewpoint, instead of what it held.
+    pub(super) fn update(&mut self, scene: &Scene, plan: &Plan) {
+        self.project(scene, plan);
+        self.divide(scene, plan);
+        let (clip, grid, bits) = (&self.clip, &self.grid, self.bits);
+        let parts = self.parts[..self.used].par_iter_mut().enumerate();
+        parts.for_each(|(number, part)| {
+            part.assemble(scene, plan, clip, &grid.viewport());
+            part.touched.clear();
+            for (place, triangle) in (0u32..).zip(&part.triangles) {
+                let name = index32(number << bits) | place;
+                Touch::append(grid, name, triangle, &mut part.touched);
+            }
+        });
+        let touched = self.parts[..self.used].iter().map(|part| &part.touched[..]);
+        self.bins.refill(&self.grid, touched);
+    }
 
-        // Elements, in chunks that keep their order.
-        let tasks: Vec<(usize, usize)> = plan
-            .draws
-            .iter()
-            .enumerate()
-            .flat_map(|(d, draw)| {
-                let count = scene.primitives[draw.primitive].indices.len();
-                (0..count).step_by(CHUNK).map(move |start| (d, start))
-            })
-            .collect();
-        let pieces: Vec<Vec<Triangle>> = tasks
-            .par_iter()
-            .map(|&(d, start)| assemble(scene, plan, d, start, &clip[d], &viewport))
-            .collect();
+    /// Names of the triangles that may touch a tile, in the order of the draws.
+    pub(super) fn of(&self, tile: usize) -> &[u32] {
+        self.bins.of(tile)
+    }
 
-        let total = pieces.iter().map(Vec::len).sum();
-        let mut triangles = Vec::with_capacity(total);
-        let mut draw_of = Vec::with_capacity(total);
-        let mut ends = [0usize; 2];
-        for (&(d, _), piece) in tasks.iter().zip(pieces) {
-            draw_of.resize(draw_of.len() + piece.len(), index32(d));
-            triangles.extend(piece);
-            match plan.kernels[plan.draws[d].kernel].coverage {
-                Coverage::Opaque => ends = [triangles.len(); 2],
-                Coverage::Mask { .. } => ends[1] = triangles.len(),
+    /// The triangle of a name.
+    #[inline]
+    pub(super) fn triangle(&self, name: u32) -> &Triangle {
+        let place = name & ((1 << self.bits) - 1);
+        &self.parts[(name >> self.bits) as usize].triangles[place as usize]
+    }
+
+    /// The draw of a triangle.
+    #[inline]
+    pub(super) fn draw_of(&self, name: u32) -> usize {
+        self.parts[(name >> self.bits) as usize].draw
+    }
+
+    /// Vertices to clip space, once each.
+    fn project(&mut self, scene: &Scene, plan: &Plan) {
+        let count = |draw: &Draw| scene.primitives[draw.primitive].positions.len();
+        self.clip.clear();
+        self.clip
+            .resize(plan.draws.iter().map(count).sum(), DVec4::ZERO);
+        let mut rest = &mut self.clip[..];
+        let mut tasks = Vec::new();
+        for draw in &plan.draws {
+            let (own, after) = rest.split_at_mut(count(draw));
+            rest = after;
+            let positions = &scene.primitives[draw.primitive].positions;
+            let matrix = plan.viewpoint.world_to_clip * draw.world;
+            let chunks = own
+                .chunks_mut(VERTICES)
+                .zip(positions.chunks(VERTICES))
+                .map(move |(clip, positions)| (matrix, clip, positions));
+            tasks.extend(chunks);
+        }
+        tasks.into_par_iter().for_each(|(matrix, clip, positions)| {
+            for (clip, p) in clip.iter_mut().zip(positions) {
+                *clip = matrix * p.as_dvec3().extend(1.0);
+            }
+        });
+    }
+
+    /// Divides the draws into parts.
+    fn divide(&mut self, scene: &Scene, plan: &Plan) {
+        let size = PartSize::of(plan);
+        self.bits = size.bits;
+        self.used = 0;
+        self.first_element.clear();
+        let (mut element, mut vertex) = (0, 0);
+        let mut ends = [0; 2];
+        for (number, draw) in plan.draws.iter().enumerate() {
+            let primitive = &scene.primitives[draw.primitive];
+            for start in (0..primitive.indices.len()).step_by(size.elements) {
+                if self.used == self.parts.len() {
+                    self.parts.push(Part::default());
+                }
+                let part = &mut self.parts[self.used];
+                (part.draw, part.start, part.first_vertex) = (number, start, vertex);
+                self.used += 1;
+            }
+            match plan.kernels[draw.kernel].coverage {
+                Coverage::Opaque => ends = [self.used; 2],
+                Coverage::Mask { .. } => ends[1] = self.used,
                 Coverage::Blend => {}
             }
+            self.first_element.push(element);
+            element += primitive.indices.len();
+            vertex += primitive.positions.len();
         }
-        let mut first_element = Vec::with_capacity(plan.draws.len());
-        let mut elements = 0;
-        for draw in &plan.draws {
-            first_element.push(elements);
-            elements += scene.primitives[draw.primitive].indices.len();
-        }
-        let bins = Bins::build(&grid, &triangles);
-        Self {
-            grid,
-            pattern,
-            triangles,
-            draw_of,
-            masked: index32(ends[0]),
-            blended: index32(ends[1]),
-            bins,
-            first_element,
-            elements,
-        }
+        self.elements = element;
+        [self.masked, self.blended] = ends.map(|end| index32(end << size.bits));
     }
 }
 
@@ -101,47 +188,32 @@ fn index32(index: usize) -> u32 {
     u32::try_from(index).expect("fewer than 2³² triangles fit the memory limit")
 }
 
-fn clip_positions(scene: &Scene, plan: &Plan, draw: &Draw) -> Vec<DVec4> {
-    let matrix = plan.viewpoint.world_to_clip * draw.world;
-    scene.primitives[draw.primitive]
-        .positions
-        .par_iter()
-        .with_min_len(CHUNK)
-        .map(|p| matrix * p.as_dvec3().extend(1.0))
-        .collect()
-}
-
-fn assemble(
-    scene: &Scene,
-    plan: &Plan,
-    draw_index: usize,
-    start: usize,
-    clip: &[DVec4],
-    viewport: &Viewport,
-) -> Vec<Triangle> {
-    let draw = &plan.draws[draw_index];
-    let indices = &scene.primitives[draw.primitive].indices;
-    let end = (start + CHUNK).min(indices.len());
-    let cull = match plan.kernels[draw.kernel].sidedness {
-        Sidedness::Single => Cull::Back,
-        Sidedness::Double => Cull::None,
-    };
-    let mut out = Vec::with_capacity(end - start);
-    for (element, corners) in (start..end).zip(&indices[start..end]) {
-        let element = index32(element);
-        let [a, b, c] = draw.winding.corners(*corners).map(|v| clip[v as usize]);
-        match draw.topology {
-            Topology::Triangles => {
-                assemble_triangle(element, [a, b, c], viewport, cull, &mut out);
-            }
-            Topology::Lines => {
-                let [a, b, _] = corners.map(|v| clip[v as usize]);
-                assemble_line(element, [a, b], viewport, &mut out);
-            }
-            Topology::Points => {
-                assemble_point(element, a, viewport, &mut out);
+impl Part {
+    fn assemble(&mut self, scene: &Scene, plan: &Plan, clip: &[DVec4], viewport: &Viewport) {
+        self.triangles.clear();
+        let draw = &plan.draws[self.draw];
+        let cull = match plan.kernels[draw.kernel].sidedness {
+            Sidedness::Single => Cull::Back,
+            Sidedness::Double => Cull::None,
+        };
+        let at = |v: u32| clip[self.first_vertex + v as usize];
+        let out = &mut self.triangles;
+        let indices = scene.primitives[draw.primitive].indices[self.start..].iter();
+        let indices = indices.take(PartSize::of(plan).elements);
+        for (element, corners) in (index32(self.start)..).zip(indices) {
+            match draw.topology {
+                Topology::Triangles => {
+                    let corners = draw.winding.corners(*corners).map(at);
+                    assemble_triangle(element, corners, viewport, cull, out);
+                }
+                Topology::Lines => {
+                    let [a, b, _] = corners.map(at);
+                    assemble_line(element, [a, b], viewport, out);
+                }
+                Topology::Points => {
+                    assemble_point(element, at(corners[0]), viewport, out);
+                }
             }
         }
     }
-    out
 }

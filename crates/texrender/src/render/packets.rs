@@ -66,8 +66,8 @@ pub(super) fn shade_pairs<S: Simd>(
         let pair = &list.all[place as usize];
         if pair.triangle != triangle {
             triangle = pair.triangle;
-            let t = list.owners[triangle as usize] as usize;
-            draw = geometry.draw_of[t];
+            let owner = list.owners[triangle as usize];
+            draw = geometry.draw_of(owner);
             let next = frame.kernel_of(draw);
             if next != kernel_index {
                 if let Some(kernel) = frame.kernels.get(kernel_index) {
@@ -77,9 +77,8 @@ pub(super) fn shade_pairs<S: Simd>(
                 kernel_index = next;
             }
             let layout = &frame.kernels[kernel_index].layout;
-            packet
-                .records
-                .push(frame, layout, draw as usize, &geometry.triangles[t]);
+            let triangle = geometry.triangle(owner);
+            packet.records.push(frame, layout, draw, triangle);
             packet.count += 1;
         }
         let pixel = rect.min + UVec2::new(pair.pixel % width, pair.pixel / width);
@@ -87,7 +86,7 @@ pub(super) fn shade_pairs<S: Simd>(
             lanes.push_pixel(record, pixel, pair.mask);
         });
         if let Some(values) = &mut out.values {
-            let instance = frame.plan.draws[draw as usize].instance;
+            let instance = frame.plan.draws[draw].instance;
             values[place as usize].surface_id = (instance + 1) as f32;
         }
         if packet.lanes.is_full() {
@@ -196,8 +195,7 @@ pub(super) fn test_alphas<S: Simd>(
         let test = tests[place];
         if test.triangle != triangle {
             triangle = test.triangle;
-            let t = triangle as usize;
-            let draw = geometry.draw_of[t];
+            let draw = geometry.draw_of(triangle);
             let next = frame.kernel_of(draw);
             if next != kernel_index {
                 if let Some(kernel) = frame.kernels.get(kernel_index) {
@@ -207,9 +205,8 @@ pub(super) fn test_alphas<S: Simd>(
                 kernel_index = next;
             }
             let layout = &frame.kernels[kernel_index].alpha_layout;
-            packet
-                .records
-                .push(frame, layout, draw as usize, &geometry.triangles[t]);
+            let triangle = geometry.triangle(triangle);
+            packet.records.push(frame, layout, draw, triangle);
             packet.count += 1;
         }
         for (sample, &point) in positions.iter().enumerate() {

@@ -63,6 +63,7 @@ pub struct Renderer<'a> {
     plan: Plan,
     /// All draws of the plan, and what surrounds each in its own space.
     draws: Vec<(Draw, Option<Bounds>)>,
+    geometry: Geometry,
     film: Film,
     /// One for each thread.
     scratch: Vec<Mutex<TileScratch>>,
@@ -124,6 +125,7 @@ impl<'a> Renderer<'a> {
             scene,
             resources,
             draws: draws.collect(),
+            geometry: Geometry::new(plan),
             film: Film::new(plan),
             scratch: Vec::new(),
             plan: plan.clone(),
@@ -145,12 +147,12 @@ impl<'a> Renderer<'a> {
     ) -> Frame<'_> {
         let start = Instant::now();
         self.cull(viewpoint);
-        let geometry = Geometry::new(self.scene, &self.plan);
+        self.geometry.update(self.scene, &self.plan);
         let mut times = FrameTimes {
             geometry: start.elapsed(),
             ..FrameTimes::default()
         };
-        self.draw_tiles(&geometry, &mut times, progress);
+        self.draw_tiles(&mut times, progress);
         times.total = start.elapsed();
         Frame {
             film: &self.film,
@@ -175,13 +177,8 @@ impl<'a> Renderer<'a> {
         self.plan.draws.extend(seen.map(|(draw, _)| draw.clone()));
     }
 
-    fn draw_tiles(
-        &mut self,
-        geometry: &Geometry,
-        times: &mut FrameTimes,
-        progress: &(dyn Fn(f32) + Sync),
-    ) {
-        let settings = &self.plan.settings;
+    fn draw_tiles(&mut self, times: &mut FrameTimes, progress: &(dyn Fn(f32) + Sync)) {
+        let (settings, geometry) = (&self.plan.settings, &self.geometry);
         let fresh = || Mutex::new(TileScratch::new(&geometry.pattern, settings.simd));
         let threads = rayon::current_num_threads();
         if self.scratch.len() < threads {

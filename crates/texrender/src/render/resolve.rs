@@ -79,41 +79,54 @@ impl Resolver<'_> {
         film: &mut FilmTile,
     ) {
         let plan = self.frame.plan;
-        let pixels = (self.rect.size().x * self.rect.size().y) as usize;
-        film.clear(pixels, plan);
+        let size = self.rect.size();
+        let pixels = size.x as usize * size.y as usize;
+        film.clear(pixels, background, plan);
         film.shaded = pairs.all.len();
         layers.depths.clear();
         layers.depths.resize(pairs.owners().len(), None);
-        // Both lists are sorted by pixel and met in step.
+        // Both lists are sorted by pixel and met in step; pixels without a pair show the background.
         let (mut surface, mut blended) = (0, pairs.visible);
-        let run = |from: usize, end: usize, number: u32| {
-            let rest = &pairs.all[from..end];
-            from + rest.iter().take_while(|pair| pair.pixel == number).count()
+        let next = |from: usize, end: usize| {
+            if from < end {
+                pairs.all[from].pixel
+            } else {
+                u32::MAX
+            }
         };
-        for (number, pixel) in (0u32..).zip(self.rect.pixels()) {
-            let surfaces = surface..run(surface, pairs.visible, number);
-            let over = blended..run(blended, pairs.all.len(), number);
+        loop {
+            let behind = next(surface, pairs.visible);
+            let before = next(blended, pairs.all.len());
+            let number = behind.min(before);
+            if number == u32::MAX {
+                return;
+            }
+            let surfaces = run(&pairs.all, surface..pairs.visible, number);
+            let over = run(&pairs.all, blended..pairs.all.len(), number);
             (surface, blended) = (surfaces.end, over.end);
-            let background = background
-                .get(number as usize)
-                .copied()
-                .unwrap_or(Vec4::ZERO);
-            let at = (pixel, background);
-            let light = self.light(at, pairs, surfaces.clone(), over.clone(), layers);
-            film.lit.push(light.lit);
+            let at = number as usize;
+            let light = self.light(
+                (number, film.lit[at]),
+                pairs,
+                surfaces.clone(),
+                over.clone(),
+                layers,
+            );
+            film.lit[at] = light.lit;
             if let Some(unlit) = &mut film.unlit {
-                unlit.push(light.unlit);
+                unlit[at] = light.unlit;
             }
             if !plan.settings.aovs.is_empty() {
-                film.push_aovs(&plan.settings.aovs, values(pairs, surfaces, over));
+                film.set_aovs(at, &plan.settings.aovs, values(pairs, surfaces, over));
             }
         }
     }
 
-    /// The light of a pixel. `surfaces`, `over`: its visible and its blended pairs.
+    /// The light of the pixel `number` of the tile. `surfaces`, `over`: its visible and its blended pairs.
+    #[inline]
     fn light(
         &self,
-        (pixel, background): (UVec2, Vec4),
+        (number, background): (u32, Vec4),
         pairs: &Pairs,
         surfaces: Range<usize>,
         over: Range<usize>,
@@ -143,6 +156,8 @@ impl Resolver<'_> {
         layers.showing.clear();
         let shows = |place: &usize| pairs.shaded[*place].light.w > 0.0;
         layers.showing.extend(over.filter(shows));
+        let width = self.rect.size().x;
+        let pixel = self.rect.min + UVec2::new(number % width, number / width);
         self.composite(pixel, pairs, surfaces, background, layers)
     }
 
@@ -216,8 +231,8 @@ impl Resolver<'_> {
             } else {
                 let pair = &pairs.all[place];
                 let of = depths[pair.triangle as usize].get_or_insert_with(|| {
-                    let t = pairs.owner(pair) as usize;
-                    self.geometry.triangles[t].depth_function()
+                    let owner = pairs.owner(pair);
+                    self.geometry.triangle(owner).depth_function()
                 });
                 of.at(pixel, point)
             };
@@ -228,6 +243,16 @@ impl Resolver<'_> {
         let same = |(a, b): (&(f32, usize), &(f32, usize))| a.1 == b.1;
         order.len() == before.len() && order.iter().zip(before.iter()).all(same)
     }
+}
+
+/// The first of `range` that belong to a pixel; the range is sorted by pixel.
+#[inline]
+fn run(pairs: &[Pair], range: Range<usize>, pixel: u32) -> Range<usize> {
+    let mut end = range.start;
+    while end < range.end && pairs[end].pixel == pixel {
+        end += 1;
+    }
+    range.start..end
 }
 
 /// The values that a pixel keeps: those of the first of the surfaces that cover most samples, or of the nearest

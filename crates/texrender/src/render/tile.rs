@@ -113,13 +113,12 @@ impl<'a> TileRenderer<'a> {
     /// Resolves opaque and masked surfaces, and lists them and the blended ones in front of them.
     fn resolve_visibility(&self, index: usize, rect: Rect, scratch: &mut TileScratch) {
         let geometry = self.geometry;
-        let triangles = geometry.bins.of(index);
+        let triangles = geometry.of(index);
         let opaque = triangles.partition_point(|&t| t < geometry.masked);
         let blended = triangles.partition_point(|&t| t < geometry.blended);
         scratch.visibility.reset(rect);
         for &t in &triangles[..opaque] {
-            let triangle = &geometry.triangles[t as usize];
-            scratch.visibility.draw(t, triangle);
+            scratch.visibility.draw(t, geometry.triangle(t));
         }
         self.draw_masked(&triangles[opaque..blended], scratch);
 
@@ -128,7 +127,7 @@ impl<'a> TileRenderer<'a> {
         pairs.push_visible(visibility);
         let width = rect.size().x;
         for &t in &triangles[blended..] {
-            visibility.visit(&geometry.triangles[t as usize], |pixel, mask| {
+            visibility.visit(geometry.triangle(t), |pixel, mask| {
                 let inside = pixel - rect.min;
                 pairs.push_blended(inside.y * width + inside.x, t, mask);
             });
@@ -147,7 +146,7 @@ impl<'a> TileRenderer<'a> {
             scratch.tested.clear();
             while let Some(&t) = rest.next_if(|_| tests.len() < TESTS) {
                 scratch.tested.push((t, tests.len()));
-                visibility.visit(&geometry.triangles[t as usize], |pixel, mask| {
+                visibility.visit(geometry.triangle(t), |pixel, mask| {
                     tests.push(AlphaTest {
                         pixel,
                         triangle: t,
@@ -160,7 +159,7 @@ impl<'a> TileRenderer<'a> {
             for &(t, first) in &scratch.tested {
                 // The pixels that still show come in the order in which they were listed.
                 let mut listed = tests[first..].iter();
-                visibility.draw_tested(t, &geometry.triangles[t as usize], |pixel, mask| {
+                visibility.draw_tested(t, geometry.triangle(t), |pixel, mask| {
                     let found = listed.find(|test| test.pixel == pixel);
                     found.map_or(0, |test| test.mask & mask)
                 });
@@ -187,8 +186,8 @@ impl<'a> TileRenderer<'a> {
     /// Marks the elements that own a sample.
     fn mark_visible(&self, triangles: &[u32]) {
         for &t in triangles {
-            let draw = self.geometry.draw_of[t as usize] as usize;
-            let source = self.geometry.triangles[t as usize].source() as usize;
+            let draw = self.geometry.draw_of(t);
+            let source = self.geometry.triangle(t).source() as usize;
             let element = self.geometry.first_element[draw] + source;
             // Most elements were met before: only the first writes what all threads share.
             let (word, bit) = (&self.visible[element / 64], 1 << (element % 64));
