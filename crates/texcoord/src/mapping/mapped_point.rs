@@ -32,7 +32,7 @@ pub struct Lookup {
     pub dstp_dy: DVec3,
     /// The face that (s,t) lies on, for mappings that have faces.
     pub face: Option<CubeFace>,
-    /// Its share of the result; the weights of a point's lookups sum to 1 within 2⁻⁵².
+    /// Its share of the result; the weights of a point's lookups sum to 1 within 2⁻⁵¹.
     pub weight: f64,
 }
 

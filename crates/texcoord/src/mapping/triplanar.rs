@@ -19,7 +19,7 @@ use crate::dual::{Dual, DualVec3};
 /// normalised; where the surface's own normal should stay visible, add the tangential parts to it: n + Σ wᵢ·(T·x + B·y).
 ///
 /// # Accuracy
-/// Weights within 2⁻⁵⁰ relative for k ≤ 8; they sum to 1 within 2⁻⁵².
+/// Weights within 2⁻⁵⁰ relative for k ≤ 8; they sum to 1 within 2⁻⁵¹.
 /// # Source
 /// Geiss 2007, "Generating Complex Procedural Terrains Using the GPU" (GPU Gems 3, chapter 1), section 1.5.
 #[derive(Clone, Copy, Debug, PartialEq)]

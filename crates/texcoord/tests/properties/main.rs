@@ -5,6 +5,7 @@
     reason = "strategies make grid points and exponents from fractions"
 )]
 
+mod mapping;
 mod oracle;
 mod packet;
 mod patch;

@@ -78,6 +78,9 @@ impl TwoStage {
         &self,
         at: &SlopedPoint<N>,
     ) -> Option<SlopedCoordinate<N>> {
+        if !at.position.value().is_finite() {
+            return None;
+        }
         let line = |direction| Line {
             origin: at.position,
             direction,
