@@ -140,7 +140,7 @@ impl Plane {
 }
 
 /// The power of two at or below |x|, within the normal numbers.
-fn power_of_two_near(x: f64) -> f64 {
+pub(crate) fn power_of_two_near(x: f64) -> f64 {
     const EXPONENT: u64 = 0x7ff << 52;
     let bits = (x.to_bits() & EXPONENT).clamp(64 << 52, 0x7c0 << 52);
     f64::from_bits(bits)

@@ -5,11 +5,13 @@
     reason = "strategies make grid points and exponents from fractions"
 )]
 
+mod mapping;
 mod oracle;
 mod packet;
 mod patch;
 mod perspective;
 mod planes;
 mod strategies;
+mod subdivision;
 mod teapot;
 mod transform;
