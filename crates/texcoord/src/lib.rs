@@ -20,7 +20,8 @@
 //! # Perspective
 //! [`perspective_parameter`] is the law for an edge, s(t) = t·w₀/(w₁ + t·(w₀ − w₁)). [`perspective_weights`] is
 //! the law for a triangle, with closed-form derivatives: no 2×2 quads, no helper pixels. [`Weights`]
-//! interpolates attributes and texture coordinates ([`ScreenCoordinate`]), also from a clipped piece.
+//! interpolates attributes and texture coordinates ([`ScreenCoordinate`]), also from a clipped piece. [`Interpolation`]
+//! names the screen-linear mode beside it; [`subdivision`] tells how far that is off and how many halvings mend it.
 //!
 //! # Packets
 //! [`packet`] is the same law for 16 pixels at once, each in a triangle of its own; [`planes`] is it for 16 in a row of
@@ -47,6 +48,7 @@
 //! | what | bound | for |
 //! |---|---|---|
 //! | s(t), weights | 8·2⁻⁵³ relative | any ratio of w |
+//! | subdivision levels | least that keep the tolerance | tolerances of 2⁻⁴⁴ and more |
 //! | attributes in f32 | 2⁻²⁴ of the result + 2⁻⁴⁹ of the range | any ratio of w |
 //! | derivatives of (s,t) | 1e-5 of the gradient's length | ratios of w to 2²⁰, slivers included |
 //! | mappings | 2⁻⁵² in (s,t); 1e-5 in derivatives | finite positions off the axis |
@@ -67,10 +69,14 @@ pub mod packet;
 mod patch;
 mod perspective;
 pub mod planes;
+pub mod subdivision;
 pub mod teapot;
 mod transform;
 pub mod unrolled;
 
 pub use patch::{BicubicPatch, PatchGrid};
-pub use perspective::{ScreenCoordinate, Weights, perspective_parameter, perspective_weights};
+pub use perspective::{
+    Interpolation, ScreenCoordinate, Weights, perspective_parameter, perspective_weights,
+};
+pub use subdivision::{screen_linear_error, subdivided_parameter, subdivision_levels};
 pub use transform::{AffineTransform, TextureTransform};

@@ -125,6 +125,42 @@ pub fn perspective_weights(
     }
 }
 
+/// How attributes are carried from the corners of a triangle to its pixels.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Interpolation {
+    /// Affine on the surface, as seen in perspective.
+    #[default]
+    PerspectiveCorrect,
+    /// Affine on the screen, as hardware without a divide drew it: textures swim where w varies, by
+    /// [`crate::screen_linear_error`] at most.
+    ScreenLinear,
+}
+
+impl Interpolation {
+    /// The 1/w of the corners that this mode interpolates with: `inv_w` itself, or 1 for all corners.
+    ///
+    /// What takes 1/w, here, in [`crate::packet`] and in [`crate::planes`], then works in this mode.
+    ///
+    /// # Examples
+    /// ```
+    /// # use glam::DVec3;
+    /// # use texcoord::{Interpolation, perspective_weights};
+    /// let corners = DVec3::new(1.0, 0.25, 1.0);
+    /// let weights = |mode: Interpolation| {
+    ///     perspective_weights(DVec3::new(1.0, 1.0, 0.0), DVec3::ZERO, DVec3::ZERO, mode.inv_w(corners)).value
+    /// };
+    /// assert_eq!(weights(Interpolation::ScreenLinear), DVec3::new(0.5, 0.5, 0.0));
+    /// assert_eq!(weights(Interpolation::PerspectiveCorrect), DVec3::new(0.8, 0.2, 0.0));
+    /// ```
+    #[must_use]
+    pub fn inv_w(self, inv_w: DVec3) -> DVec3 {
+        match self {
+            Self::PerspectiveCorrect => inv_w,
+            Self::ScreenLinear => DVec3::ONE,
+        }
+    }
+}
+
 /// Derivatives of the weights along one screen axis; `pairs` holds the factors of (0,1), (1,2), (2,0).
 fn weight_slopes(edges: DVec3, slopes: DVec3, pairs: DVec3) -> DVec3 {
     let wronskian = |i: usize, j: usize| slopes[i] * edges[j] - edges[i] * slopes[j];

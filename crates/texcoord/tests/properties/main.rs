@@ -12,5 +12,6 @@ mod patch;
 mod perspective;
 mod planes;
 mod strategies;
+mod subdivision;
 mod teapot;
 mod transform;
