@@ -100,23 +100,26 @@ pub fn subdivision_levels(w0: f64, w1: f64, tolerance: f64) -> Option<u32> {
 /// ```
 #[must_use]
 pub fn subdivided_parameter(t: f64, w0: f64, w1: f64, levels: u32) -> f64 {
-    let (mut t, mut w0, mut w1) = (t, w0, w1);
+    // Shares of the two ends, and their w; t alone loses the digits of 1 − t that a far end needs.
+    let (mut of_1, mut of_0) = (t, 1.0 - t);
+    let (mut w0, mut w1) = (w0, w1);
     let (mut start, mut width) = (0.0, 1.0);
     for _ in 0..levels.min(1000) {
         let middle = 0.5 * w0 + 0.5 * w1;
-        // The middle in space on the screen: s(t) = ½.
-        let seen_at = 0.5 * w1 / middle;
+        // The middle in space on the screen, where s(t) = ½.
+        let (middle_1, middle_0) = (0.5 * w1 / middle, 0.5 * w0 / middle);
+        let beyond = of_1 * middle_0 - middle_1 * of_0;
         width *= 0.5;
-        if t < seen_at {
-            t /= seen_at;
+        if beyond < 0.0 {
+            (of_1, of_0) = (of_1 / middle_1, -beyond / middle_1);
             w1 = middle;
         } else {
-            t = (t - seen_at) / (1.0 - seen_at);
+            (of_1, of_0) = (beyond / middle_0, of_0 / middle_0);
             start += width;
             w0 = middle;
         }
     }
-    start + width * t
+    start + width * of_1
 }
 
 fn in_front(w: f64) -> bool {

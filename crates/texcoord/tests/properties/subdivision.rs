@@ -145,3 +145,12 @@ fn depths_and_tolerances_without_sense_have_their_documented_results() {
     assert_eq!(subdivided_parameter(1.0, 1.0, 2.0, u32::MAX), 1.0);
     assert_eq!(subdivided_parameter(0.0, 1.0, 2.0, u32::MAX), 0.0);
 }
+
+#[test]
+fn a_far_end_keeps_its_digits() {
+    // Near t = 1 an edge with a ratio of 2²⁰ is a million times as steep: rounding of 1 − t must not show.
+    let (t, w0, w1) = (0.999_998_092_651_367_2, 1.0, 1_040_185.511_467_099_4);
+    let found = subdivided_parameter(t, w0, w1, subdivision_levels(w0, w1, 1e-14).unwrap());
+    let off = distance(&exact(found), &edge_parameter(t, w0, w1));
+    assert!(off <= exact(1e-14 + libm::ldexp(1.0, -48)));
+}
