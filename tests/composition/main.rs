@@ -19,5 +19,6 @@ mod needs;
 mod output;
 mod reading;
 mod renderer;
+mod scene_files;
 mod showcase;
 mod tile;

@@ -33,6 +33,16 @@ pub enum Error {
         /// The size asked for, in texels.
         size: UVec3,
     },
+    /// The rows of an image do not divide into a volume's slices.
+    #[error(
+        "{height} rows do not divide into {depth} slices; give the number of slices that lie below each other"
+    )]
+    Slices {
+        /// Rows of the image.
+        height: u32,
+        /// Slices asked for.
+        depth: u32,
+    },
     /// A volume's texels cannot be counted in this machine's address space.
     #[error("volume of {}×{}×{} texels with {channels} channels is too large to address", .size.x, .size.y, .size.z)]
     VolumeTooLarge {

@@ -53,6 +53,31 @@ impl Volume {
         Ok(Self { slices, size })
     }
 
+    /// A volume of `depth` slices that lie below each other in an image, the first at the top.
+    ///
+    /// # Errors
+    /// [`Error::Slices`] unless `depth` divides the image's height.
+    /// # Examples
+    /// ```
+    /// use glam::{UVec2, UVec3};
+    /// use sampler::volume::Volume;
+    /// use sampler::{Texels, Texture, Transfer};
+    /// let image = Texture::new(UVec2::new(2, 6), 1, Transfer::Linear, Texels::U8(vec![7; 12]))?;
+    /// assert_eq!(Volume::from_slices(image.clone(), 3)?.size(), UVec3::new(2, 2, 3));
+    /// assert!(Volume::from_slices(image, 4).is_err());
+    /// # Ok::<(), sampler::Error>(())
+    /// ```
+    pub fn from_slices(image: Texture, depth: u32) -> Result<Self, Error> {
+        let UVec2 { x, y: height } = image.size();
+        if depth == 0 || !height.is_multiple_of(depth) {
+            return Err(Error::Slices { height, depth });
+        }
+        Ok(Self {
+            slices: image,
+            size: UVec3::new(x, height / depth, depth),
+        })
+    }
+
     /// The same texels, their colour said to be straight or premultiplied. Nothing is converted.
     #[must_use]
     pub fn with_alpha(self, alpha: AlphaMode) -> Self {

@@ -42,6 +42,18 @@ pub enum Error {
         /// What the parser said.
         detail: String,
     },
+    /// A scene file, or a file that it names, says something it must not.
+    #[error("{}:{line}:{column}: {detail}", path.display())]
+    Toml {
+        /// The file.
+        path: PathBuf,
+        /// Line, from 1.
+        line: usize,
+        /// Column, from 1.
+        column: usize,
+        /// What is wrong and what would be right.
+        detail: String,
+    },
     /// A scene says something it must not.
     #[error("{}: {place}: {detail}", path.display())]
     Scene {

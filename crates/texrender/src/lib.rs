@@ -85,6 +85,7 @@ pub mod scene;
 mod error;
 mod number;
 mod settings;
+mod text;
 
 pub use envmap;
 pub use mipmap;
@@ -98,13 +99,13 @@ pub use error::Error;
 /// Instructions that packets are made of: see [`Settings::simd`].
 pub use fearless_simd::Level as SimdLevel;
 pub use finish::{BitDepth, FinishOptions, ToneMap, save, save_aovs};
-pub use load::{LoadOptions, OutsidePaths, load};
+pub use load::{Document, LoadOptions, OutsidePaths, load, load_document};
 pub use plan::Plan;
 pub use prepare::{Resources, prepare};
 pub use render::{Film, Renderer, render};
 pub use scene::Scene;
 pub use settings::{
-    Aov, Background, DEFAULT_FOV_Y_DEGREES, EnvironmentSource, FilterChoice, Orbit, Settings,
+    Aov, Background, DEFAULT_FOV_Y_DEGREES, EnvironmentSource, FilterChoice, Orbit, Settings, Show,
     TileOrder, View,
 };
 

@@ -29,6 +29,8 @@ pub struct Settings {
     pub samples: u32,
     /// Which values beside the colour are kept.
     pub aovs: Vec<Aov>,
+    /// What is shown of all surfaces instead of their materials.
+    pub show: Option<Show>,
     /// Bytes that textures and pictures may take.
     pub max_memory: u64,
     /// In which order tiles are drawn. It never changes the picture.
@@ -50,6 +52,7 @@ impl Default for Settings {
             filter: FilterChoice::default(),
             samples: 4,
             aovs: Vec::new(),
+            show: None,
             max_memory: crate::DEFAULT_MAX_MEMORY,
             tile_order: TileOrder::Rows,
             simd: Level::new(),
@@ -210,6 +213,47 @@ impl Aov {
             Self::TextureCoordinate => &["U", "V"],
             Self::MipLevel => &["level"],
             Self::SurfaceId => &["id"],
+        }
+    }
+}
+
+/// What can be shown of a surface's texture coordinates: those of its base-colour map, or else of another map, or
+/// else its set 0. Surfaces without any are dark grey.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Show {
+    /// A checkerboard of eight cells a unit, lit; redder toward growing s, greener toward growing t.
+    Checker,
+    /// How much shapes are stretched: white where they are kept, yellow at √2, orange at 2, dark red at 4 times; of
+    /// surfaces that show the texture mirrored white, violet, blue.
+    Distortion,
+    /// Texels along a unit of the scene, from blue at 1/2 by two octaves a colour to white, a dark line an octave.
+    TexelDensity,
+    /// The mip level that a trilinear filter reads: blue where the texture is magnified, green at level 0, yellow at 2,
+    /// red at 4, white at 6.
+    MipLevel,
+    /// s as red, t as green.
+    Coordinates,
+}
+
+impl Show {
+    /// All of them.
+    pub const ALL: [Self; 5] = [
+        Self::Checker,
+        Self::Distortion,
+        Self::TexelDensity,
+        Self::MipLevel,
+        Self::Coordinates,
+    ];
+
+    /// Its name on the command line and in files.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Checker => "checker",
+            Self::Distortion => "distortion",
+            Self::TexelDensity => "texel-density",
+            Self::MipLevel => "mip",
+            Self::Coordinates => "uv",
         }
     }
 }

@@ -10,7 +10,7 @@ use super::File;
 use crate::error::Error;
 use crate::number::nearest_f32;
 use crate::scene::{
-    AlphaMode, Material, MaterialModel, NormalTexture, OcclusionTexture, TextureUse,
+    AlphaMode, Coordinates, Material, MaterialModel, NormalTexture, OcclusionTexture, TextureUse,
 };
 
 /// Reads one material.
@@ -100,13 +100,15 @@ fn model(source: &GltfMaterial) -> (MaterialModel, Vec4, Option<TextureUse>) {
 fn texture_use(info: &Info) -> TextureUse {
     let plain = TextureUse {
         texture: info.texture().index(),
-        texcoord: info.tex_coord() as usize,
+        coordinates: Coordinates::Set(info.tex_coord() as usize),
         transform: TextureTransform::default(),
     };
     match info.texture_transform() {
         None => plain,
         Some(t) => TextureUse {
-            texcoord: t.tex_coord().map_or(plain.texcoord, |set| set as usize),
+            coordinates: t
+                .tex_coord()
+                .map_or(plain.coordinates, |set| Coordinates::Set(set as usize)),
             transform: TextureTransform {
                 offset: t.offset().into(),
                 rotation: t.rotation(),
@@ -128,9 +130,11 @@ fn with_raw_transform(texture: usize, texcoord: u32, extension: Option<&Value>) 
     let overridden = get("texCoord").and_then(Value::as_u64);
     TextureUse {
         texture,
-        texcoord: overridden
-            .and_then(|set| usize::try_from(set).ok())
-            .unwrap_or(texcoord as usize),
+        coordinates: Coordinates::Set(
+            overridden
+                .and_then(|set| usize::try_from(set).ok())
+                .unwrap_or(texcoord as usize),
+        ),
         transform: TextureTransform {
             offset: pair("offset").unwrap_or(Vec2::ZERO),
             rotation: get("rotation").and_then(number).unwrap_or(0.0),

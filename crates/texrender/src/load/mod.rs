@@ -1,5 +1,7 @@
 //! Stage 1: file → [`Scene`].
 //!
+//! Scene files (.toml) say what glTF cannot, and what the picture shall be: [`load_document`].
+//!
 //! glTF 2.0, as JSON with external or embedded data or as one binary file. Geometry is read and
 //! posed; images stay encoded. Nothing is fetched from a network, and no path leaves the scene's
 //! folder unless allowed.
@@ -14,6 +16,7 @@ mod nodes;
 mod picture;
 mod pose;
 mod primitive;
+mod scene_file;
 mod texture;
 mod uri;
 
@@ -24,6 +27,7 @@ use crate::error::Error;
 use crate::scene::Scene;
 use buffers::Buffers;
 pub use picture::load_texture;
+pub use scene_file::{Document, json_schema, load_document, reference_page};
 
 /// What a reader may do, and which moment of an animation it reads.
 #[derive(Clone, Debug)]
@@ -82,6 +86,9 @@ impl File<'_> {
 /// supported; an animation that does not exist.
 pub fn load(path: impl AsRef<Path>, options: &LoadOptions) -> Result<Scene, Error> {
     let path = path.as_ref();
+    if scene_file::is_scene_file(path) {
+        return load_document(path, options).map(|document| document.scene);
+    }
     let container = container::open(path)?;
     let mut warnings = container.warnings;
     extensions::check(path, &container.root, &mut warnings)?;

@@ -8,7 +8,7 @@ use sampler::{AddressMode, Filter};
 use super::uri::{Target, resolve};
 use super::{File, buffers};
 use crate::error::Error;
-use crate::scene::{ImageData, ImageSource, Texture};
+use crate::scene::{ImageData, ImageSource, ImageTexture, Texture};
 
 /// Every image of the file, undecoded; image files are not opened.
 pub(super) fn images(file: &File) -> Result<Vec<ImageSource>, Error> {
@@ -66,9 +66,11 @@ pub(super) fn textures(file: &File) -> Result<Vec<Texture>, Error> {
     Ok(file
         .document
         .textures()
-        .map(|texture| Texture {
-            image: texture.source().index(),
-            sampler: sampler_state(&texture.sampler()),
+        .map(|texture| {
+            Texture::Image(ImageTexture {
+                image: texture.source().index(),
+                sampler: sampler_state(&texture.sampler()),
+            })
         })
         .collect())
 }

@@ -36,14 +36,25 @@ pub(super) fn resolve(
     let relative = percent_encoding::percent_decode_str(uri)
         .decode_utf8()
         .map_err(|_| error(format!("'{uri}' is not UTF-8 once decoded")))?;
+    local_file(scene, &relative, outside)
+        .map(Target::File)
+        .map_err(error)
+}
+
+/// A file by its path relative to the folder of the scene file `scene`; or why it is refused.
+pub(super) fn local_file(
+    scene: &Path,
+    relative: &str,
+    outside: OutsidePaths,
+) -> Result<PathBuf, String> {
     let folder = scene.parent().unwrap_or(Path::new(""));
-    let file = folder.join(Path::new(relative.as_ref()));
-    if outside == OutsidePaths::Refused && leaves(folder, Path::new(relative.as_ref()), &file) {
-        return Err(error(format!(
-            "'{uri}' leads out of the scene's folder; move the file there, or allow it with --allow-outside"
-        )));
+    let file = folder.join(Path::new(relative));
+    if outside == OutsidePaths::Refused && leaves(folder, Path::new(relative), &file) {
+        return Err(format!(
+            "'{relative}' leads out of the scene's folder; move the file there, or allow it with --allow-outside"
+        ));
     }
-    Ok(Target::File(file))
+    Ok(file)
 }
 
 /// The scheme of an absolute URI. One letter is a drive, not a scheme.

@@ -5,9 +5,14 @@ use mipmap::{MipFilter, SamplerState};
 use texcoord::AffineTransform;
 
 use super::filter::{MapReading, chosen_filter, chosen_reading};
+use super::shown::Shown;
 use super::texture::{PyramidNeed, Readers, SheetNeed, TextureNeed, TextureRole};
+use super::volume::VolumeNeed;
 use super::{Plan, TangentNeed};
-use crate::scene::{AlphaMode, Material, MaterialModel, Primitive, Scene, TextureUse, Topology};
+use crate::scene::{
+    AlphaMode, Coordinates, ImageTexture, Material, MaterialModel, Primitive, Scene, Texture,
+    TextureUse, Topology,
+};
 use crate::settings::Aov;
 
 /// How the surface of a primitive is shaded: its factors, and the maps that change them.
@@ -33,6 +38,8 @@ pub struct Kernel {
     pub emissive_map: Option<Map>,
     /// What light does to it.
     pub lighting: Lighting,
+    /// What is shown of its coordinates instead of all this.
+    pub shown: Option<Shown>,
 }
 
 /// Which samples of a surface are covered.
@@ -122,21 +129,43 @@ pub enum TangentSource {
     File,
     /// Generated: index into [`Plan::tangents`].
     Generated(usize),
+    /// The mapping that gives the map its coordinates, per pixel.
+    Mapping,
 }
 
 /// A texture as a kernel samples it.
 #[derive(Clone, Copy, Debug)]
 pub struct Map {
+    /// What is read.
+    pub source: MapSource,
+    /// Where.
+    pub coordinates: Coordinates,
+    /// Applied to (s,t); `None` for the identity.
+    pub transform: Option<AffineTransform>,
+    /// What stands for it where a mapping gives no coordinate: it changes nothing.
+    pub neutral: Vec4,
+}
+
+/// What a map reads.
+#[derive(Clone, Copy, Debug)]
+pub enum MapSource {
+    /// An image.
+    Image(ImageMap),
+    /// A formula: index into [`Scene::textures`].
+    Solid(usize),
+    /// A digitised solid: index into [`Plan::volumes`].
+    Volume(usize),
+}
+
+/// An image as a kernel samples it.
+#[derive(Clone, Copy, Debug)]
+pub struct ImageMap {
     /// Index into [`Plan::textures`].
     pub texture: usize,
     /// Address modes and filters.
     pub sampler: SamplerState,
     /// Whether another filter than the sampler's reads the pyramid.
     pub reading: MapReading,
-    /// Set of texture coordinates.
-    pub texcoord: usize,
-    /// Applied to the coordinates; `None` for the identity.
-    pub transform: Option<AffineTransform>,
     /// Index into [`Plan::sheets`]; `None` where packets do not read by that sampler or filter.
     pub sheet: Option<usize>,
 }
@@ -170,7 +199,46 @@ impl<'a> KernelBuilder<'a> {
         }
     }
 
+    pub(super) fn scene(&self) -> &'a Scene {
+        self.scene
+    }
+
+    pub(super) fn primitive(&self) -> &'a Primitive {
+        self.primitive
+    }
+
+    pub(super) fn material(&self) -> &Material {
+        &self.material
+    }
+
+    /// What its primitive alone decides: white, without light, maps or holes.
+    pub(super) fn bare(&self) -> Kernel {
+        Kernel {
+            material: self.material.name.clone(),
+            coverage: Coverage::Opaque,
+            sidedness: if self.material.double_sided {
+                Sidedness::Double
+            } else {
+                Sidedness::Single
+            },
+            curvature: match self.primitive.normals {
+                Some(_) => Curvature::Smooth,
+                None => Curvature::Flat,
+            },
+            vertex_colors: false,
+            base_color: Vec4::ONE,
+            base_color_map: None,
+            emissive: Vec3::ZERO,
+            emissive_map: None,
+            lighting: Lighting::Unlit,
+            shown: None,
+        }
+    }
+
     pub(super) fn build(mut self) -> Kernel {
+        if let Some(show) = self.plan.settings.show {
+            return self.shown(show);
+        }
         let coverage = match self.material.alpha_mode {
             AlphaMode::Opaque => Coverage::Opaque,
             AlphaMode::Mask { cutoff } => Coverage::Mask { cutoff },
@@ -182,17 +250,7 @@ impl<'a> KernelBuilder<'a> {
         let base_color = self.material.base_color;
         let shows_color = base_color.truncate() != Vec3::ZERO || coverage != Coverage::Opaque;
         Kernel {
-            material: self.material.name.clone(),
             coverage,
-            sidedness: if self.material.double_sided {
-                Sidedness::Double
-            } else {
-                Sidedness::Single
-            },
-            curvature: match self.primitive.normals {
-                Some(_) => Curvature::Smooth,
-                None => Curvature::Flat,
-            },
             vertex_colors: self.primitive.colors.is_some(),
             base_color,
             base_color_map: self.map(
@@ -209,6 +267,7 @@ impl<'a> KernelBuilder<'a> {
                 TextureRole::Colour,
                 "emission",
             ),
+            ..self.bare()
         }
     }
 
@@ -288,15 +347,17 @@ impl<'a> KernelBuilder<'a> {
             TextureRole::Normal,
             "normal",
         )?;
-        let source = if self.primitive.tangents.is_some() {
-            TangentSource::File
-        } else {
-            self.plan.tangents.push(TangentNeed {
-                primitive: self.index,
-                texcoord: normal.map.texcoord,
-                transform: normal.map.transform,
-            });
-            TangentSource::Generated(self.plan.tangents.len() - 1)
+        let source = match normal.map.coordinates {
+            Coordinates::Mapping(_) => TangentSource::Mapping,
+            Coordinates::Set(_) if self.primitive.tangents.is_some() => TangentSource::File,
+            Coordinates::Set(texcoord) => {
+                self.plan.tangents.push(TangentNeed {
+                    primitive: self.index,
+                    texcoord,
+                    transform: normal.map.transform,
+                });
+                TangentSource::Generated(self.plan.tangents.len() - 1)
+            }
         };
         Some((map, normal.scale, source))
     }
@@ -318,13 +379,40 @@ impl<'a> KernelBuilder<'a> {
     fn map(&mut self, source: Option<TextureUse>, role: TextureRole, purpose: &str) -> Option<Map> {
         let source = source?;
         let texture = self.scene.textures.get(source.texture)?;
-        if source.texcoord >= self.primitive.texcoords.len() {
-            self.plan.warnings.push(format!(
-                "mesh '{}' has no TEXCOORD_{} for the {purpose} map of material '{}'; drawn without that map",
-                self.primitive.name, source.texcoord, self.material.name
-            ));
-            return None;
+        match source.coordinates {
+            Coordinates::Set(set) if set >= self.primitive.texcoords.len() => {
+                self.plan.warnings.push(format!(
+                    "mesh '{}' has no TEXCOORD_{set} for the {purpose} map of material '{}'; drawn without that map",
+                    self.primitive.name, self.material.name
+                ));
+                return None;
+            }
+            Coordinates::Mapping(mapping) if mapping >= self.scene.mappings.len() => return None,
+            _ => {}
         }
+        let reason = format!("{purpose} of '{}'", self.material.name);
+        let read = match texture {
+            Texture::Image(texture) => MapSource::Image(self.image(texture, role, reason)),
+            Texture::Solid(_) => MapSource::Solid(source.texture),
+            Texture::Volume(texture) => MapSource::Volume(VolumeNeed::list(
+                &mut self.plan.volumes,
+                texture,
+                role,
+                reason,
+            )),
+        };
+        Some(Map {
+            source: read,
+            coordinates: source.coordinates,
+            transform: (!source.transform.is_identity()).then(|| source.transform.affine()),
+            neutral: match role {
+                TextureRole::Normal => Vec4::new(0.5, 0.5, 1.0, 1.0),
+                _ => Vec4::ONE,
+            },
+        })
+    }
+
+    fn image(&mut self, texture: &ImageTexture, role: TextureRole, reason: String) -> ImageMap {
         let sampler = chosen_filter(self.plan.settings.filter, texture.sampler);
         let minified = sampler.mip != MipFilter::None || sampler.max_anisotropy > 1.0;
         let pyramid = if minified {
@@ -332,7 +420,6 @@ impl<'a> KernelBuilder<'a> {
         } else {
             PyramidNeed::None
         };
-        let reason = format!("{purpose} of '{}'", self.material.name);
         let texture = TextureNeed::list(
             &mut self.plan.textures,
             texture.image,
@@ -346,15 +433,13 @@ impl<'a> KernelBuilder<'a> {
         if !in_packets || tells_level {
             self.plan.textures[texture].readers = Readers::Pixels;
         }
-        Some(Map {
+        ImageMap {
             texture,
             reading,
             sheet: in_packets
                 .then(|| SheetNeed::list(&mut self.plan.sheets, texture, sampler.address)),
             sampler,
-            texcoord: source.texcoord,
-            transform: (!source.transform.is_identity()).then(|| source.transform.affine()),
-        })
+        }
     }
 }
 

@@ -8,9 +8,11 @@ mod describe;
 mod environment;
 mod filter;
 mod kernel;
+mod shown;
 mod texture;
 mod view;
 mod visible;
+mod volume;
 
 use glam::{DMat4, Mat3};
 use shading::PunctualLight;
@@ -22,12 +24,15 @@ pub use describe::scene_summary;
 pub use environment::EnvironmentNeed;
 pub use filter::MapReading;
 pub use kernel::{
-    Coverage, Curvature, Kernel, Lighting, LitKernel, Map, Reflectance, Sidedness, TangentSource,
+    Coverage, Curvature, ImageMap, Kernel, Lighting, LitKernel, Map, MapSource, Reflectance,
+    Sidedness, TangentSource,
 };
+pub use shown::Shown;
 pub use texture::{PyramidNeed, Readers, SheetNeed, TextureNeed, TextureRole};
 pub use view::Viewpoint;
 use visible::Culling;
 pub(crate) use visible::in_view;
+pub use volume::VolumeNeed;
 
 /// What a picture needs.
 #[derive(Clone, Debug)]
@@ -44,6 +49,8 @@ pub struct Plan {
     pub textures: Vec<TextureNeed>,
     /// Pyramids to lay out for packets.
     pub sheets: Vec<SheetNeed>,
+    /// Digitised solids to decode.
+    pub volumes: Vec<VolumeNeed>,
     /// Tangents to generate.
     pub tangents: Vec<TangentNeed>,
     /// Light from afar, if any visible surface or the background shows it.
@@ -138,6 +145,7 @@ impl Plan {
             kernels: Vec::new(),
             textures: Vec::new(),
             sheets: Vec::new(),
+            volumes: Vec::new(),
             tangents: Vec::new(),
             environment: None,
             lights: Vec::new(),
@@ -146,6 +154,8 @@ impl Plan {
         };
         visible::add_draws(scene, &mut plan, culling);
         texture::measure(scene, &mut plan)?;
+        volume::measure(scene, &mut plan)?;
+        shown::measure(scene, &mut plan)?;
         if plan.kernels.iter().any(Kernel::is_lit) {
             plan.lights.clone_from(&scene.lights);
         }
@@ -169,7 +179,8 @@ impl Plan {
         let passing = passing.map(TextureNeed::bytes).max().unwrap_or(0);
         let sheets = self.sheets.iter();
         let sheets: u64 = sheets.map(|need| need.bytes(&self.textures)).sum();
-        kept + passing + sheets + crate::render::Film::bytes_for(self)
+        let volumes: u64 = self.volumes.iter().map(VolumeNeed::bytes).sum();
+        kept + passing + sheets + volumes + crate::render::Film::bytes_for(self)
     }
 
     /// Whether any visible surface shows its colour untouched by light and tone.

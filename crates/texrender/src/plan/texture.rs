@@ -2,7 +2,7 @@
 
 use glam::UVec2;
 use rayon::prelude::*;
-use sampler::{AddressMode, Addressing};
+use sampler::{AddressMode, Addressing, Transfer};
 
 use super::Plan;
 use crate::error::Error;
@@ -81,6 +81,18 @@ impl SheetNeed {
 }
 
 impl TextureRole {
+    /// How the numbers of its colour channels stand for light.
+    #[must_use]
+    pub fn transfer(self) -> Transfer {
+        match self {
+            Self::Colour
+            | Self::ColourWithAlpha
+            | Self::AlphaTested { .. }
+            | Self::ColourAndData => Transfer::Srgb,
+            Self::Data | Self::MetallicRoughness | Self::Normal => Transfer::Linear,
+        }
+    }
+
     /// The role that serves both, if one does.
     ///
     /// Only the green of a metallic-roughness map is not plain data; no other map of data reads green (occlusion is

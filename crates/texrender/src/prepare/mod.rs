@@ -11,6 +11,7 @@ use mipmap::packet::PackedPyramid;
 use mipmap::pyramid::{PyramidOptions, Schedule};
 use mipmap::{Content, Pyramid};
 use rayon::prelude::*;
+use sampler::volume::Volume;
 use sampler::{AlphaMode, Texture, Transfer};
 use shading::ReflectanceTable;
 
@@ -26,6 +27,8 @@ pub struct Resources {
     pub textures: Vec<Option<Pyramid>>,
     /// One for each of [`Plan::sheets`].
     pub sheets: Vec<PackedPyramid>,
+    /// One for each of [`Plan::volumes`].
+    pub volumes: Vec<Volume>,
     /// One for each of [`Plan::tangents`]: tangents a triangle corner.
     pub tangents: Vec<Vec<[Vec4; 3]>>,
     /// The environment, if the plan needs one.
@@ -104,6 +107,7 @@ pub fn prepare(scene: &Scene, plan: &Plan) -> Result<Resources, Error> {
     Ok(Resources {
         textures: pyramids,
         sheets,
+        volumes: volumes(scene, plan)?,
         tangents: generated.into_iter().map(|t| t.corners).collect(),
         environment,
         reflectance,
@@ -175,6 +179,20 @@ fn textures(scene: &Scene, plan: &Plan) -> Result<Textures, Error> {
         sheets: sheets.into_iter().map(|(_, sheet)| sheet).collect(),
         built,
     })
+}
+
+fn volumes(scene: &Scene, plan: &Plan) -> Result<Vec<Volume>, Error> {
+    let decoded = plan.volumes.par_iter().map(|need| {
+        let source = &scene.images[need.image];
+        let picture = decode::image(source, plan.settings.max_memory)?;
+        let failed = |error: sampler::Error| Error::Image {
+            name: source.name.clone(),
+            detail: error.to_string(),
+        };
+        let texture = Texture::from_image(picture, need.role.transfer()).map_err(failed)?;
+        Volume::from_slices(texture, need.size.z).map_err(failed)
+    });
+    decoded.collect()
 }
 
 /// A texture's pyramid as its readers want it.

@@ -6,14 +6,17 @@ use glam::{IVec2, Vec4};
 use normalmap::packet::{TangentFrame, curvature_variance, decode_normal, filtered_variance};
 use shading::packet::Vec3x16;
 use texcoord::AffineTransform;
-use texcoord::packet::F64x16;
+use texcoord::mapping::SurfacePoint;
+use texcoord::packet::{F64x16, PacketWeights};
 
 use super::frame::Frame;
 use super::lanes::{Lanes, Points, Rows};
 use super::layout::{Layout, Normals};
+use super::mapped::{MOST_LOOKUPS, MappedLanes, MappedLookup, SurfaceLanes};
 use super::record::Records;
 use super::textures;
-use crate::plan::{Map, TangentSource};
+use crate::plan::{Map, MapSource, TangentSource};
+use crate::scene::Coordinates as Set;
 
 /// Normals, and the variance of slopes about them under the pixels.
 #[derive(Clone, Copy)]
@@ -46,6 +49,8 @@ pub(super) struct Fragments<'a, S: Simd> {
     footprint: f32,
     /// Coordinates of the layout's first set.
     first_set: Option<Coordinates<S>>,
+    /// Where the points lie and what each of the layout's mappings makes of it, if there are any.
+    mapped: Option<Box<(SurfaceLanes, Vec<MappedLanes<'a>>)>>,
 }
 
 impl<'a, S: Simd> Fragments<'a, S> {
@@ -71,7 +76,11 @@ impl<'a, S: Simd> Fragments<'a, S> {
             weights,
             footprint: 1.0,
             first_set: None,
+            mapped: None,
         };
+        if layout.surface {
+            made.mapped = Some(mapped(frame, layout, lanes, records, &made.points.weights));
+        }
         if !layout.sets.is_empty() {
             made.first_set = Some(made.coordinates_at(0));
         }
@@ -190,20 +199,113 @@ impl<'a, S: Simd> Fragments<'a, S> {
         )
     }
 
-    /// The texture coordinates of a map, transform applied.
+    /// The texture coordinates of a map, transform applied; of a mapping those of its first lookup, 0 in lanes without
+    /// one.
     #[inline(always)]
     pub(super) fn map_coordinates(&self, map: &Map) -> Coordinates<S> {
-        let plain = self.coordinates(map.texcoord);
-        match &map.transform {
-            Some(transform) => plain.transformed(self.simd, transform),
-            None => plain,
-        }
+        self.coordinates_of(map.coordinates, map.transform.as_ref())
+    }
+
+    /// As [`map_coordinates`](Self::map_coordinates).
+    #[inline(always)]
+    pub(super) fn coordinates_of(
+        &self,
+        source: Set,
+        transform: Option<&AffineTransform>,
+    ) -> Coordinates<S> {
+        let plain = match source {
+            Set::Set(set) => self.coordinates(set),
+            Set::Mapping(mapping) => self
+                .lookup(mapping, 0)
+                .map_or(Coordinates::zero(self.simd), |found| found.coordinates),
+        };
+        plain.placed(self.simd, transform)
+    }
+
+    /// Where a lane looks, if the layout asks for it; else the origin.
+    pub(super) fn surface_point(&self, lane: usize) -> SurfacePoint {
+        let surface = self.mapped.as_ref().map(|mapped| &mapped.0);
+        surface.map_or(SurfacePoint::default(), |surface| surface.point(lane))
     }
 
     /// Colours of a map under the pixels.
     #[inline(always)]
     pub(super) fn sample(&self, map: &Map) -> [f32x16<S>; 4] {
-        textures::sample(self.simd, self.frame, map, &self.map_coordinates(map))
+        match (&map.source, map.coordinates) {
+            (MapSource::Image(image), Set::Set(_)) => {
+                textures::sample(self.simd, self.frame, image, &self.map_coordinates(map))
+            }
+            _ => self.blended(map),
+        }
+    }
+
+    /// Colours of a map that is read where a mapping says, or from a solid.
+    #[inline(never)]
+    fn blended(&self, map: &Map) -> [f32x16<S>; 4] {
+        let simd = self.simd;
+        let Set::Mapping(mapping) = map.coordinates else {
+            let at = self.map_coordinates(map);
+            return textures::sample_source(simd, self.frame, map, &at, &[[0.0; 16]; 3]);
+        };
+        let neutral = self.color(map.neutral);
+        let mut sum = [self.splat(0.0); 4];
+        let mut found = self.splat(0.0);
+        for k in 0..MOST_LOOKUPS {
+            let Some(lookup) = self.lookup(mapping, k) else {
+                break;
+            };
+            let at = lookup.coordinates.placed(simd, map.transform.as_ref());
+            let texel = textures::sample_source(simd, self.frame, map, &at, &lookup.p);
+            for (sum, texel) in sum.iter_mut().zip(texel) {
+                *sum += lookup
+                    .weight
+                    .simd_gt(0.0)
+                    .select(texel * lookup.weight, self.splat(0.0));
+            }
+            found += lookup.weight;
+        }
+        let found = found.simd_gt(0.0);
+        std::array::from_fn(|c| found.select(sum[c], neutral[c]))
+    }
+
+    fn lookup(&self, mapping: usize, k: usize) -> Option<MappedLookup<S>> {
+        let (_, mappings) = &**self.mapped.as_ref()?;
+        let lanes = mappings.iter().find(|lanes| lanes.mapping == mapping)?;
+        lanes.lookup(self.simd, k, self.footprint)
+    }
+
+    /// Normals that a map bends in the frames of the mapping that gives it its coordinates: the mean over its lookups,
+    /// each in its own frame, and the variance that the map's own filter hides.
+    #[inline(never)]
+    fn bent_by_mapping(
+        &self,
+        map: &Map,
+        scale: f32,
+        normal: Vec3x16<S>,
+    ) -> (Vec3x16<S>, f32x16<S>) {
+        let (simd, none) = (self.simd, self.splat(0.0));
+        let (mut sum, mut hidden) = (Vec3x16::grey(none), none);
+        let (Set::Mapping(mapping), Some(mapped)) = (map.coordinates, &self.mapped) else {
+            return (normal, none);
+        };
+        let (surface, mappings) = &**mapped;
+        let Some(lanes) = mappings.iter().find(|lanes| lanes.mapping == mapping) else {
+            return (normal, none);
+        };
+        for k in 0..MOST_LOOKUPS {
+            let Some(lookup) = lanes.lookup(simd, k, self.footprint) else {
+                break;
+            };
+            let at = lookup.coordinates.placed(simd, map.transform.as_ref());
+            let [x, y, z, _] = textures::sample_source(simd, self.frame, map, &at, &lookup.p);
+            let texel = Vec3x16::new(x, y, z);
+            let (tangent, handedness) = lanes.tangents(simd, k, surface, normal);
+            let frame = turned(TangentFrame::new(normal, tangent, handedness), map);
+            let weight = lookup.weight;
+            sum += frame.perturbed(decode_normal(simd, texel, scale)) * weight;
+            hidden += filtered_variance(simd, decode_normal(simd, texel, 1.0), scale) * weight;
+        }
+        (sum.normalize_or(normal), hidden)
     }
 
     /// Unit shading normals in the world on the side that is seen, and how much the normals under the pixels
@@ -213,6 +315,13 @@ impl<'a, S: Simd> Fragments<'a, S> {
         let (smooth, side) = self.smooth_normals();
         let bent = match map {
             None => smooth,
+            Some((map, scale, TangentSource::Mapping)) => {
+                let (direction, hidden) = self.bent_by_mapping(map, *scale, smooth.direction);
+                ShadingNormals {
+                    direction,
+                    variance: smooth.variance + hidden,
+                }
+            }
             Some((map, scale, source)) => {
                 let frame = self.tangent_frame(smooth.direction, map, *source);
                 let [x, y, z, _] = self.sample(map);
@@ -284,12 +393,10 @@ impl<'a, S: Simd> Fragments<'a, S> {
         let corners = self.corners(self.layout.tangent_row());
         let tangent = self.interpolated(&corners, self.weights);
         let frame = TangentFrame::new(normal, tangent, corners[0][3]);
-        match (source, &map.transform) {
-            // Generated tangents follow the transformed coordinates already.
-            (TangentSource::File, Some(transform)) => {
-                frame.turned(transform.matrix.matrix2.as_mat2())
-            }
-            _ => frame,
+        match source {
+            TangentSource::File => turned(frame, map),
+            // They follow the transformed coordinates already.
+            TangentSource::Generated(_) | TangentSource::Mapping => frame,
         }
     }
 
@@ -305,7 +412,41 @@ impl<'a, S: Simd> Fragments<'a, S> {
     }
 }
 
+/// The frame of a map's coordinates, transform applied, from that of the plain ones.
+#[inline(always)]
+fn turned<S: Simd>(frame: TangentFrame<S>, map: &Map) -> TangentFrame<S> {
+    match &map.transform {
+        Some(transform) => frame.turned(transform.matrix.matrix2.as_mat2()),
+        None => frame,
+    }
+}
+
+/// What the mappings of a layout make of the points.
+#[inline(never)]
+fn mapped<'a, S: Simd>(
+    frame: &'a Frame<'a>,
+    layout: &Layout,
+    lanes: &Lanes,
+    records: &Records,
+    weights: &PacketWeights<S>,
+) -> Box<(SurfaceLanes, Vec<MappedLanes<'a>>)> {
+    let surface = SurfaceLanes::new(frame, layout, lanes, records, weights);
+    let mappings = layout.mappings.iter();
+    let mappings = mappings.map(|&mapping| MappedLanes::new(frame, mapping, &surface));
+    let mappings = mappings.collect();
+    Box::new((surface, mappings))
+}
+
 impl<S: Simd> Coordinates<S> {
+    /// With the transform of a map applied.
+    #[inline(always)]
+    fn placed(self, simd: S, transform: Option<&AffineTransform>) -> Self {
+        match transform {
+            Some(transform) => self.transformed(simd, transform),
+            None => self,
+        }
+    }
+
     #[inline(always)]
     fn zero(simd: S) -> Self {
         let (wide, narrow) = (F64x16::splat(simd, 0.0), f32x16::splat(simd, 0.0));

@@ -1,9 +1,10 @@
 //! What all pixels of a frame read.
 
 use fearless_simd::{Simd, SimdBase, f32x16};
-use glam::{Mat3, Vec3};
+use glam::{DAffine3, Mat3, Vec3};
 use shading::LightKind;
 use shading::packet::Vec3x16;
+use texcoord::mapping::{PlacedMapping, Placement};
 
 use super::layout::{Layout, Wants};
 use crate::plan::{Draw, Kernel, Plan, Viewpoint};
@@ -20,6 +21,8 @@ pub(super) struct Frame<'a> {
     /// One for each of the plan's.
     pub kernels: Vec<FrameKernel<'a>>,
     pub rays: Rays,
+    /// For each draw the mappings that its kernel reads, from the world.
+    mappings: Vec<Vec<(usize, PlacedMapping)>>,
 }
 
 /// A kernel, and how the records of its triangles are laid out.
@@ -43,20 +46,46 @@ impl<'a> Frame<'a> {
             layout: Layout::of(kernel, wants),
             alpha_layout: Layout::of_alpha(kernel),
         };
+        let kernels: Vec<FrameKernel> = plan.kernels.iter().map(kernel).collect();
+        let mappings = |draw: &Draw| {
+            let read = kernels[draw.kernel].layout.mappings.iter();
+            let placed = |&mapping: &usize| Some((mapping, in_world(scene, mapping, draw)?));
+            read.filter_map(placed).collect()
+        };
         Self {
             scene,
             plan,
             resources,
             linear: plan.draws.iter().map(linear).collect(),
-            kernels: plan.kernels.iter().map(kernel).collect(),
+            mappings: plan.draws.iter().map(mappings).collect(),
+            kernels,
             rays: Rays::new(&plan.viewpoint, [plan.settings.width, plan.settings.height]),
         }
+    }
+
+    /// A mapping of a draw, from the world; `None` for a draw that has no volume.
+    pub(super) fn placed_mapping(&self, draw: usize, mapping: usize) -> Option<&PlacedMapping> {
+        let found = self.mappings[draw]
+            .iter()
+            .find(|(read, _)| *read == mapping);
+        found.map(|(_, placed)| placed)
     }
 
     /// The kernel of a draw.
     pub(super) fn kernel_of(&self, draw: usize) -> usize {
         self.plan.draws[draw].kernel
     }
+}
+
+/// A mapping of a draw's space as one of the world.
+fn in_world(scene: &Scene, mapping: usize, draw: &Draw) -> Option<PlacedMapping> {
+    let placed = scene.mappings.get(mapping)?;
+    let from_world = DAffine3::from_mat4(draw.world.inverse());
+    let to_mapping = placed.placement.object_to_mapping() * from_world;
+    Some(PlacedMapping {
+        placement: Placement::new(to_mapping).ok()?,
+        mapping: placed.mapping,
+    })
 }
 
 /// Where the points of the picture are seen from: toward the viewer, as an affine function of the pixel.

@@ -28,6 +28,11 @@ impl Lanes {
         self.count
     }
 
+    /// The record of each lane.
+    pub(super) fn records(&self) -> [usize; LANES] {
+        self.record.map(|record| record as usize)
+    }
+
     pub(super) fn is_full(&self) -> bool {
         self.count == LANES
     }

@@ -1,6 +1,7 @@
 //! Which attributes the shading of a surface reads, and where they lie in the records of its triangles.
 
 use crate::plan::{Curvature, Kernel, Lighting, Map, Reflectance, TangentSource};
+use crate::scene::Coordinates;
 
 /// Rows of four that hold the edge functions and 1/w.
 pub(super) const EDGE_ROWS: usize = 3;
@@ -17,10 +18,14 @@ pub(super) const EDGE_ROWS: usize = 3;
 pub(super) struct Layout {
     /// Sets of texture coordinates that are read.
     pub sets: Vec<usize>,
+    /// Mappings that are read; they look at positions and normals.
+    pub mappings: Vec<usize>,
     pub normals: Normals,
     pub tangents: Option<TangentSource>,
     pub colors: bool,
     pub positions: bool,
+    /// Whether points of the surface are asked for one by one.
+    pub surface: bool,
 }
 
 /// How many normals a triangle has.
@@ -33,6 +38,15 @@ pub(super) enum Normals {
     Flat,
     /// One a corner.
     Smooth,
+}
+
+impl Normals {
+    fn of(curvature: Curvature) -> Self {
+        match curvature {
+            Curvature::Flat => Self::Flat,
+            Curvature::Smooth => Self::Smooth,
+        }
+    }
 }
 
 /// What a picture asks of its surfaces beside their colour.
@@ -53,12 +67,12 @@ impl Layout {
         };
         let normals = match kernel.curvature {
             _ if lit.is_none() && !wants.values => Normals::Unread,
-            Curvature::Flat => Normals::Flat,
-            Curvature::Smooth => Normals::Smooth,
+            curvature => Normals::of(curvature),
         };
+        let tangents = lit.and_then(|lit| lit.normal.as_ref().map(|(_, _, source)| *source));
         let mut layout = Self {
             normals,
-            tangents: lit.and_then(|lit| lit.normal.as_ref().map(|(_, _, source)| *source)),
+            tangents: tangents.filter(|source| *source != TangentSource::Mapping),
             colors: kernel.vertex_colors,
             positions: wants.values || (wants.near_lights && lit.is_some()),
             ..Self::default()
@@ -67,7 +81,13 @@ impl Layout {
             layout.sets.push(0);
         }
         for map in maps(kernel) {
-            layout.read_set(map);
+            layout.read_coordinates(kernel, map.coordinates);
+        }
+        if let Some(shown) = &kernel.shown {
+            layout.read_surface(kernel);
+            if let Some(coordinates) = shown.coordinates {
+                layout.read_coordinates(kernel, coordinates);
+            }
         }
         layout
     }
@@ -79,15 +99,29 @@ impl Layout {
             ..Self::default()
         };
         if let Some(map) = &kernel.base_color_map {
-            layout.read_set(map);
+            layout.read_coordinates(kernel, map.coordinates);
         }
         layout
     }
 
-    fn read_set(&mut self, map: &Map) {
-        if !self.sets.contains(&map.texcoord) {
-            self.sets.push(map.texcoord);
+    fn read_coordinates(&mut self, kernel: &Kernel, coordinates: Coordinates) {
+        match coordinates {
+            Coordinates::Set(set) if !self.sets.contains(&set) => self.sets.push(set),
+            Coordinates::Set(_) => {}
+            Coordinates::Mapping(mapping) => {
+                if !self.mappings.contains(&mapping) {
+                    self.mappings.push(mapping);
+                }
+                self.read_surface(kernel);
+            }
         }
+    }
+
+    /// Where points lie on the surface: positions and normals.
+    fn read_surface(&mut self, kernel: &Kernel) {
+        self.surface = true;
+        self.positions = true;
+        self.normals = Normals::of(kernel.curvature);
     }
 
     /// Wide rows of a record.

@@ -18,12 +18,14 @@ mod frame;
 mod geometry;
 mod lanes;
 mod layout;
+mod mapped;
 mod packets;
 mod pairs;
 mod record;
 mod renderer;
 mod resolve;
 mod shade;
+mod shown;
 mod textures;
 mod tile;
 

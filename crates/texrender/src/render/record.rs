@@ -13,12 +13,15 @@ use crate::scene::{Primitive, Topology};
 pub(super) struct Records {
     pub wide: Vec<[f64; 4]>,
     pub narrow: Vec<[f32; 4]>,
+    /// Draw of each.
+    pub draws: Vec<usize>,
 }
 
 impl Records {
     pub(super) fn clear(&mut self) {
         self.wide.clear();
         self.narrow.clear();
+        self.draws.clear();
     }
 
     /// Keeps record `last` alone, as the first.
@@ -29,6 +32,8 @@ impl Records {
         self.narrow
             .copy_within(last * narrow..(last + 1) * narrow, 0);
         self.narrow.truncate(narrow);
+        self.draws.swap(0, last);
+        self.draws.truncate(1);
     }
 
     /// Adds the record of a triangle of a draw.
@@ -39,6 +44,7 @@ impl Records {
         draw: usize,
         triangle: &Triangle,
     ) {
+        self.draws.push(draw);
         let planes = triangle.planes();
         let corners = Corners::new(frame, draw, triangle, planes.piece);
         for (edge, inv_w) in planes.edges.iter().zip(planes.inv_w) {
@@ -191,7 +197,7 @@ impl<'a> Corners<'a> {
                 self.draw.winding.corners(corners)
             }
             (TangentSource::File, Some(tangents)) => self.at(tangents),
-            (TangentSource::File, None) => [Vec4::ZERO; 3],
+            (TangentSource::File, None) | (TangentSource::Mapping, _) => [Vec4::ZERO; 3],
         };
         // A mirrored node turns the bitangent that a cross product makes of mirrored axes.
         let mirrored = match self.draw.winding {

@@ -11,8 +11,9 @@ use shading::packet::{
 use texcoord::packet::F64x16;
 
 use super::fragments::Fragments;
+use super::shown::colours;
 use super::textures::levels_of_detail;
-use crate::plan::{Coverage, Kernel, Lighting, LitKernel, Map, Reflectance};
+use crate::plan::{Coverage, Kernel, Lighting, LitKernel, Map, MapSource, Reflectance};
 
 /// What the AOVs keep of a fragment.
 #[derive(Clone, Copy, Debug)]
@@ -68,6 +69,10 @@ pub(super) fn shade<S: Simd>(
 /// Base colour and alpha: factor, vertex colour and map.
 #[inline(always)]
 fn base_color<S: Simd>(fragments: &Fragments<'_, S>, kernel: &Kernel) -> [f32x16<S>; 4] {
+    if let Some(shown) = &kernel.shown {
+        let [r, g, b] = colours(fragments, shown);
+        return [r, g, b, fragments.splat(1.0)];
+    }
     let mut color = fragments.color(kernel.base_color);
     if let Some(vertex_colors) = fragments.vertex_colors() {
         color = times(color, vertex_colors);
@@ -252,9 +257,9 @@ pub(super) fn values<S: Simd>(fragments: &Fragments<'_, S>, kernel: &Kernel) -> 
                 Some(map) => fragments.map_coordinates(map),
                 None => fragments.coordinates(0),
             };
-            let levels = match &kernel.base_color_map {
-                Some(map) => levels_of_detail(frame, map, &at),
-                None => [0.0; LANES],
+            let levels = match kernel.base_color_map.map(|map| map.source) {
+                Some(MapSource::Image(image)) => levels_of_detail(frame, &image, &at),
+                _ => [0.0; LANES],
             };
             let normal_map = match &kernel.lighting {
                 Lighting::Lit(lit) => lit.normal.as_ref(),

@@ -5,17 +5,19 @@ use fearless_simd::prelude::*;
 use glam::{DVec2, Vec2, Vec4};
 use mipmap::packet::PacketFootprint;
 use mipmap::{Footprint, LodRule, Pyramid};
+use sampler::solid::box_width;
 
 use super::fragments::Coordinates;
 use super::frame::Frame;
-use crate::plan::{Map, MapReading, TextureRole};
+use crate::plan::{ImageMap, Map, MapReading, MapSource, TextureRole};
+use crate::scene::Texture;
 
 /// Colours of a map, a packet a channel; not premultiplied.
 #[inline(never)]
 pub(super) fn sample<S: Simd>(
     simd: S,
     frame: &Frame,
-    map: &Map,
+    map: &ImageMap,
     at: &Coordinates<S>,
 ) -> [f32x16<S>; 4] {
     simd.vectorize(
@@ -62,11 +64,21 @@ fn unpremultiplied<S: Simd>(simd: S, [r, g, b, alpha]: [f32x16<S>; 4]) -> [f32x1
 
 /// For filters that read no packets.
 #[inline(always)]
-fn one_by_one<S: Simd>(simd: S, frame: &Frame, map: &Map, at: &Coordinates<S>) -> [f32x16<S>; 4] {
+fn one_by_one<S: Simd>(
+    simd: S,
+    frame: &Frame,
+    map: &ImageMap,
+    at: &Coordinates<S>,
+) -> [f32x16<S>; 4] {
     let pyramid = pyramid(frame, map);
     let texels = at
         .footprints()
         .map(|footprint| read(pyramid, map, &footprint).0);
+    channels(simd, &texels)
+}
+
+/// Texels channel by channel.
+fn channels<S: Simd>(simd: S, texels: &[Vec4; 16]) -> [f32x16<S>; 4] {
     let mut channels = [f32x16::splat(simd, 0.0); 4];
     for (lane, texel) in texels.iter().enumerate() {
         for (channel, value) in channels.iter_mut().zip(texel.to_array()) {
@@ -76,10 +88,46 @@ fn one_by_one<S: Simd>(simd: S, frame: &Frame, map: &Map, at: &Coordinates<S>) -
     channels
 }
 
+/// As [`sample`], of any source. `p`: the third coordinate and its changes from pixel to pixel.
+pub(super) fn sample_source<S: Simd>(
+    simd: S,
+    frame: &Frame,
+    map: &Map,
+    at: &Coordinates<S>,
+    p: &[[f64; 16]; 3],
+) -> [f32x16<S>; 4] {
+    let footprints = at.footprints();
+    let extended = |lane: usize| {
+        let Footprint { st, dst_dx, dst_dy } = footprints[lane];
+        let [p, dx, dy] = [0, 1, 2].map(|k| p[k][lane]);
+        let changes = [dst_dx.as_dvec2().extend(dx), dst_dy.as_dvec2().extend(dy)];
+        (st.extend(p), changes)
+    };
+    match map.source {
+        MapSource::Image(image) => sample(simd, frame, &image, at),
+        MapSource::Solid(index) => {
+            let Some(Texture::Solid(solid)) = frame.scene.textures.get(index) else {
+                return [f32x16::splat(simd, 1.0); 4];
+            };
+            let texels = std::array::from_fn(|lane| {
+                let (stp, [dx, dy]) = extended(lane);
+                solid.value(stp, box_width(dx, dy)).extend(1.0)
+            });
+            channels(simd, &texels)
+        }
+        MapSource::Volume(index) => {
+            let volume = &frame.resources.volumes[index];
+            let address = frame.plan.volumes[index].address;
+            let texels = std::array::from_fn(|lane| volume.trilinear(address, extended(lane).0));
+            channels(simd, &texels)
+        }
+    }
+}
+
 /// Levels of detail that a map is read at.
 pub(super) fn levels_of_detail<S: Simd>(
     frame: &Frame,
-    map: &Map,
+    map: &ImageMap,
     at: &Coordinates<S>,
 ) -> [f32; 16] {
     let pyramid = pyramid(frame, map);
@@ -87,7 +135,7 @@ pub(super) fn levels_of_detail<S: Simd>(
         .map(|footprint| read(pyramid, map, &footprint).1)
 }
 
-fn pyramid<'a>(frame: &Frame<'a>, map: &Map) -> &'a Pyramid {
+fn pyramid<'a>(frame: &Frame<'a>, map: &ImageMap) -> &'a Pyramid {
     let pyramid = frame.resources.textures[map.texture].as_ref();
     pyramid.expect("the plan keeps what is read pixel by pixel")
 }
@@ -106,7 +154,7 @@ impl<S: Simd> Coordinates<S> {
 
 /// Colour of a map under a footprint by the filter that was chosen for it, and its level of detail; of filters that
 /// read several levels at once, that of the footprint's longer axis.
-fn read(pyramid: &Pyramid, map: &Map, footprint: &Footprint) -> (Vec4, f32) {
+fn read(pyramid: &Pyramid, map: &ImageMap, footprint: &Footprint) -> (Vec4, f32) {
     let longer = || {
         let last = (pyramid.levels() - 1) as f32;
         let Footprint { dst_dx, dst_dy, .. } = *footprint;

@@ -1,9 +1,7 @@
-//! Images before they are decoded, and textures that refer to them.
+//! Images before they are decoded.
 
 use std::path::PathBuf;
 use std::sync::Arc;
-
-use mipmap::SamplerState;
 
 /// An image of the scene, still encoded.
 #[derive(Clone, Debug, PartialEq)]
@@ -28,13 +26,4 @@ pub enum ImageData {
         /// Number of bytes.
         length: usize,
     },
-}
-
-/// An image and the way its author wants it sampled.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Texture {
-    /// Index into [`super::Scene::images`].
-    pub image: usize,
-    /// Address modes and filters as authored.
-    pub sampler: SamplerState,
 }

@@ -3,14 +3,24 @@
 use glam::{Vec3, Vec4};
 use texcoord::TextureTransform;
 
+/// Where a surface is on a texture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Coordinates {
+    /// A set of texture coordinates of its vertices; p is 0.
+    Set(usize),
+    /// A mapping of where it lies: index into [`super::Scene::mappings`], evaluated per pixel. Where it gives no
+    /// coordinate the surface is as if it had no such map.
+    Mapping(usize),
+}
+
 /// A texture as a material refers to it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TextureUse {
     /// Index into [`super::Scene::textures`].
     pub texture: usize,
-    /// Set of texture coordinates.
-    pub texcoord: usize,
-    /// Applied to the coordinates of the set.
+    /// Where it is read.
+    pub coordinates: Coordinates,
+    /// Applied to (s,t).
     pub transform: TextureTransform,
 }
 
@@ -105,6 +115,31 @@ pub struct Material {
     pub alpha_mode: AlphaMode,
     /// Whether the back side is drawn, with its normal turned.
     pub double_sided: bool,
+}
+
+impl Material {
+    /// Moves the indices of all textures that it refers to up by `by`.
+    pub(crate) fn move_textures(&mut self, by: usize) {
+        self.uses_mut().for_each(|map| map.texture += by);
+    }
+
+    /// All textures that it refers to.
+    pub(crate) fn uses_mut(&mut self) -> impl Iterator<Item = &mut TextureUse> {
+        let mut all = vec![&mut self.base_color_map, &mut self.emissive_map];
+        match &mut self.model {
+            MaterialModel::MetallicRoughness {
+                map,
+                specular_map,
+                specular_color_map,
+                ..
+            } => all.extend([map, specular_map, specular_color_map]),
+            MaterialModel::SpecularGlossiness { map, .. } => all.push(map),
+            MaterialModel::Unlit => {}
+        }
+        let normal = self.normal.as_mut().map(|normal| &mut normal.map);
+        let occlusion = self.occlusion.as_mut().map(|occlusion| &mut occlusion.map);
+        all.into_iter().flatten().chain(normal).chain(occlusion)
+    }
 }
 
 impl Default for Material {

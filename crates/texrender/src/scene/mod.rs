@@ -8,19 +8,22 @@ mod camera;
 mod geometry;
 mod image;
 mod material;
+mod texture;
 
 use std::path::PathBuf;
 
 use glam::DMat4;
 use shading::PunctualLight;
+use texcoord::mapping::PlacedMapping;
 
 pub use camera::{Camera, Projection};
 pub(crate) use geometry::cofactors;
 pub use geometry::{Bounds, Primitive, Topology};
-pub use image::{ImageData, ImageSource, Texture};
+pub use image::{ImageData, ImageSource};
 pub use material::{
-    AlphaMode, Material, MaterialModel, NormalTexture, OcclusionTexture, TextureUse,
+    AlphaMode, Coordinates, Material, MaterialModel, NormalTexture, OcclusionTexture, TextureUse,
 };
+pub use texture::{ImageTexture, SolidPattern, SolidTexture, Texture, VolumeTexture};
 
 /// A scene as its author wrote it.
 #[derive(Clone, Debug, Default)]
@@ -33,8 +36,10 @@ pub struct Scene {
     pub instances: Vec<Instance>,
     /// Materials; the last resort for a primitive without one is [`Material::default`].
     pub materials: Vec<Material>,
-    /// Pairs of an image and a way to sample it.
+    /// Textures that materials refer to.
     pub textures: Vec<Texture>,
+    /// Mappings that materials refer to, each of the space of the primitive that it is used on.
+    pub mappings: Vec<PlacedMapping>,
     /// Images, undecoded.
     pub images: Vec<ImageSource>,
     /// Cameras, in the order of the file.

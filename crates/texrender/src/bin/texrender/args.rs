@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::{Args, Parser, Subcommand};
 use texrender::{
     Aov, Background, BitDepth, DEFAULT_FOV_Y_DEGREES, EnvironmentSource, FilterChoice,
-    FinishOptions, LoadOptions, Orbit, OutsidePaths, Settings, SimdLevel, ToneMap, View,
+    FinishOptions, LoadOptions, Orbit, OutsidePaths, Settings, Show, SimdLevel, ToneMap, View,
 };
 
 use crate::values;
@@ -29,6 +29,8 @@ pub(crate) enum Command {
     Render(Box<RenderArgs>),
     /// Print what a scene holds, and what a picture of it needs and why.
     Inspect(Box<InspectArgs>),
+    /// Print the JSON Schema of scene files, for editors.
+    Schema(SchemaArgs),
     /// Measure a texture's seam, make it repeat without one, or make more of it that does not repeat.
     Tile(TileArgs),
     /// Measure every texture filter: its speed against its error, as data, plots and one HTML page.
@@ -39,19 +41,19 @@ pub(crate) enum Command {
 
 #[derive(Args)]
 pub(crate) struct RenderArgs {
-    /// Scene file: .gltf or .glb.
+    /// Scene file: .toml, .gltf or .glb. What a .toml file says of the picture holds where an option does not.
     pub scene: PathBuf,
-    /// Picture to write: .png, .jpg, .webp, .hdr or .exr.
+    /// Picture to write: .png, .jpg, .webp, .hdr or .exr. Left out: where the scene file says.
     #[arg(short, long, value_name = "FILE")]
-    pub output: PathBuf,
+    pub output: Option<PathBuf>,
     #[command(flatten)]
     pub picture: PictureArgs,
-    /// Curve from radiance to display; EXR and HDR stay linear.
-    #[arg(long, value_name = "neutral|aces|none", default_value = "neutral", value_parser = values::tonemap)]
-    pub tonemap: ToneMap,
-    /// Stops by which the picture is brightened.
-    #[arg(long, value_name = "STOPS", default_value_t = 0.0, allow_negative_numbers = true, value_parser = values::finite)]
-    pub exposure: f32,
+    /// Curve from radiance to display; EXR and HDR stay linear. Left out: neutral.
+    #[arg(long, value_name = "neutral|aces|none")]
+    pub tonemap: Option<ToneMap>,
+    /// Stops by which the picture is brightened. Left out: 0.
+    #[arg(long, value_name = "STOPS", allow_negative_numbers = true, value_parser = values::finite)]
+    pub exposure: Option<f32>,
     /// Bits a channel of PNG files.
     #[arg(long, value_name = "8|16", default_value = "8", value_parser = values::bit_depth)]
     pub bit_depth: BitDepth,
@@ -65,10 +67,17 @@ pub(crate) struct RenderArgs {
 
 #[derive(Args)]
 pub(crate) struct InspectArgs {
-    /// Scene file: .gltf or .glb.
+    /// Scene file: .toml, .gltf or .glb.
     pub scene: PathBuf,
     #[command(flatten)]
     pub picture: PictureArgs,
+}
+
+#[derive(Args)]
+pub(crate) struct SchemaArgs {
+    /// Print every table and key in Markdown instead.
+    #[arg(long)]
+    pub markdown: bool,
 }
 
 #[derive(Args)]
@@ -155,9 +164,9 @@ pub(crate) struct BenchArgs {
 /// What decides which picture it is.
 #[derive(Args)]
 pub(crate) struct PictureArgs {
-    /// Size of the picture in pixels.
-    #[arg(long, value_name = "WxH", default_value = "1280x720", value_parser = values::size)]
-    pub size: (u32, u32),
+    /// Size of the picture in pixels. Left out: 1280x720.
+    #[arg(long, value_name = "WxH", value_parser = values::size)]
+    pub size: Option<(u32, u32)>,
     /// Camera of the scene, by name or index. Without any view option: the first one, or else a view that fits
     /// everything.
     #[arg(long, value_name = "NAME|INDEX", conflicts_with_all = ["eye", "fov", "azimuth", "elevation", "distance"])]
@@ -182,27 +191,28 @@ pub(crate) struct PictureArgs {
     /// Distance from the centre; as near as shows everything if left out.
     #[arg(long, value_name = "LENGTH")]
     pub distance: Option<f64>,
-    /// Light from afar: a latitude-longitude .hdr or .exr file, or none.
-    #[arg(long, value_name = "FILE|studio|none", default_value = "studio", value_parser = values::environment)]
-    pub env: EnvironmentSource,
-    /// Turn of the environment about the vertical.
+    /// Light from afar: a latitude-longitude .hdr or .exr file, or none. Left out: studio.
+    #[arg(long, value_name = "FILE|studio|none", value_parser = values::environment)]
+    pub env: Option<EnvironmentSource>,
+    /// Turn of the environment about the vertical. Left out: 0.
+    #[arg(long, value_name = "DEGREES", allow_negative_numbers = true)]
+    pub env_rotation: Option<f32>,
+    /// What is behind the scene: #rrggbb, transparent, or the environment. Left out: #333333.
+    #[arg(long, value_name = "COLOR|transparent|env")]
+    pub background: Option<Background>,
+    /// How textures are filtered. Left out: aniso:16.
     #[arg(
         long,
-        value_name = "DEGREES",
-        default_value_t = 0.0,
-        allow_negative_numbers = true
+        value_name = "nearest|bilinear|trilinear|aniso[:N]|ewa[:fast|:best]|auto:RMSE|file"
     )]
-    pub env_rotation: f32,
-    /// What is behind the scene: #rrggbb, transparent, or the environment.
-    #[arg(long, value_name = "COLOR|transparent|env", default_value = "#333333", value_parser = values::background)]
-    pub background: Background,
-    /// How textures are filtered.
-    #[arg(long, value_name = "nearest|bilinear|trilinear|aniso[:N]|ewa[:fast|:best]|auto:RMSE|file", default_value = "aniso:16",
-          value_parser = values::filter)]
-    pub filter: FilterChoice,
-    /// Coverage samples a pixel: 1, 2, 4, 8, 16, 32 or 64.
-    #[arg(long, value_name = "N", default_value_t = 4)]
-    pub samples: u32,
+    pub filter: Option<FilterChoice>,
+    /// Coverage samples a pixel: 1, 2, 4, 8, 16, 32 or 64. Left out: 4.
+    #[arg(long, value_name = "N")]
+    pub samples: Option<u32>,
+    /// Show texture coordinates instead of materials: a checkerboard, how they stretch the surface, texels a unit, the
+    /// mip level that they read, or themselves.
+    #[arg(long, value_name = "checker|distortion|texel-density|mip|uv", value_parser = values::show)]
+    pub show: Option<Show>,
     /// Seconds into an animation; the rest pose if left out.
     #[arg(long, value_name = "SECONDS", value_parser = values::seconds)]
     pub time: Option<f64>,
@@ -237,24 +247,28 @@ impl PictureArgs {
         }
     }
 
-    pub(crate) fn settings(&self, aovs: Vec<Aov>) -> Settings {
+    /// What the scene file asks for, with what the options change of it.
+    pub(crate) fn settings(&self, file: &Settings, aovs: Vec<Aov>) -> Settings {
+        let (width, height) = self.size.unwrap_or((file.width, file.height));
+        let environment = self.env.clone();
         Settings {
-            width: self.size.0,
-            height: self.size.1,
-            view: self.view(),
-            environment: self.env.clone(),
-            environment_rotation: self.env_rotation,
-            background: self.background,
-            filter: self.filter,
-            samples: self.samples,
+            width,
+            height,
+            view: self.view(file),
+            environment: environment.unwrap_or_else(|| file.environment.clone()),
+            environment_rotation: self.env_rotation.unwrap_or(file.environment_rotation),
+            background: self.background.unwrap_or(file.background),
+            filter: self.filter.unwrap_or(file.filter),
+            samples: self.samples.unwrap_or(file.samples),
+            show: self.show.or(file.show),
             aovs,
             max_memory: self.max_memory,
             simd: self.simd,
-            ..Settings::default()
+            tile_order: file.tile_order,
         }
     }
 
-    fn view(&self) -> View {
+    fn view(&self, file: &Settings) -> View {
         let fov_y_degrees = self.fov.unwrap_or(DEFAULT_FOV_Y_DEGREES);
         if let Some(camera) = &self.camera {
             return View::Camera(camera.clone());
@@ -268,7 +282,7 @@ impl PictureArgs {
         }
         let asked = [self.azimuth, self.elevation, self.distance, self.fov];
         if asked.iter().all(Option::is_none) {
-            return View::Default;
+            return file.view.clone();
         }
         View::Orbit(Orbit {
             azimuth_degrees: self.azimuth,
@@ -280,10 +294,11 @@ impl PictureArgs {
 }
 
 impl RenderArgs {
-    pub(crate) fn finish_options(&self) -> FinishOptions {
+    /// What the scene file asks for, with what the options change of it.
+    pub(crate) fn finish_options(&self, file: &FinishOptions) -> FinishOptions {
         FinishOptions {
-            tonemap: self.tonemap,
-            exposure: self.exposure,
+            tonemap: self.tonemap.unwrap_or(file.tonemap),
+            exposure: self.exposure.unwrap_or(file.exposure),
             bit_depth: self.bit_depth,
         }
     }

@@ -6,6 +6,7 @@ mod frontier;
 mod inspect;
 mod progress;
 mod render;
+mod schema;
 mod stats;
 mod tile;
 mod values;
@@ -21,6 +22,7 @@ fn main() -> ExitCode {
     let done = match Cli::parse().command {
         Command::Render(args) => render::run(&args),
         Command::Inspect(args) => inspect::run(&args),
+        Command::Schema(args) => schema::run(&args),
         Command::Tile(args) => tile::run(&args),
         Command::Frontier(args) => frontier::run(&args),
         Command::Bench(args) => bench::run(&args),

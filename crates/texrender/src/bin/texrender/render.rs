@@ -3,7 +3,9 @@
 use std::path::{Path, PathBuf};
 
 use texrender::finish::{check_folder, check_holds};
-use texrender::{Aov, Error, Film, Plan, Scene, load, prepare, render, save, save_aovs};
+use texrender::{
+    Aov, Document, Error, Film, Plan, Scene, load_document, prepare, render, save, save_aovs,
+};
 
 use crate::args::RenderArgs;
 use crate::progress::Progress;
@@ -11,9 +13,7 @@ use crate::stats::{Stats, Stopwatch, peak_memory_bytes};
 use crate::with_threads;
 
 pub(crate) fn run(args: &RenderArgs) -> Result<(), Error> {
-    // What can be refused at once is refused before any work.
-    let outputs = Outputs::new(args)?;
-    let stats = with_threads(args.picture.threads.unwrap_or(0), || draw(args, &outputs))?;
+    let stats = with_threads(args.picture.threads.unwrap_or(0), || draw(args))?;
     match &args.stats {
         None => Ok(()),
         Some(path) => write_stats(path, &stats),
@@ -22,6 +22,7 @@ pub(crate) fn run(args: &RenderArgs) -> Result<(), Error> {
 
 /// Files to write, and which AOVs go into each.
 struct Outputs {
+    picture: PathBuf,
     /// AOVs stored in the picture's own file.
     layers: Vec<Aov>,
     /// Other files.
@@ -29,13 +30,21 @@ struct Outputs {
 }
 
 impl Outputs {
-    fn new(args: &RenderArgs) -> Result<Self, Error> {
+    fn new(args: &RenderArgs, document: &Document) -> Result<Self, Error> {
+        let picture = args.output.clone().or_else(|| document.output.clone());
+        let Some(picture) = picture else {
+            return Err(Error::Setting {
+                setting: "--output",
+                detail: "say where the picture is written: -o FILE".to_owned(),
+            });
+        };
         let mut outputs = Self {
+            picture,
             layers: Vec::new(),
             files: Vec::new(),
         };
         for (aov, path) in &args.aov {
-            let list = if *path == args.output {
+            let list = if *path == outputs.picture {
                 &mut outputs.layers
             } else {
                 match outputs.files.iter().position(|(p, _)| p == path) {
@@ -51,10 +60,11 @@ impl Outputs {
                 list.push(*aov);
             }
         }
-        check_folder(&args.output)?;
+        check_folder(&outputs.picture)?;
+        let background = document.settings.background;
         check_holds(
-            &args.output,
-            args.picture.background,
+            &outputs.picture,
+            args.picture.background.unwrap_or(background),
             args.bit_depth,
             &outputs.layers,
         )?;
@@ -89,11 +99,19 @@ impl Outputs {
     }
 }
 
-fn draw(args: &RenderArgs, outputs: &Outputs) -> Result<Stats, Error> {
-    let settings = args.picture.settings(outputs.aovs());
-    settings.validate()?;
+fn draw(args: &RenderArgs) -> Result<Stats, Error> {
     let progress = Progress::new();
     let mut watch = Stopwatch::start();
+    progress.stage("loading");
+    let document = load_document(&args.scene, &args.picture.load_options())?;
+    let load = watch.lap();
+
+    // What can be refused at once is refused before more work.
+    let outputs = Outputs::new(args, &document)?;
+    let settings = args.picture.settings(&document.settings, outputs.aovs());
+    settings.validate()?;
+    let finish = args.finish_options(&document.finish);
+    let scene = document.scene;
     let mut stats = Stats {
         width: settings.width,
         height: settings.height,
@@ -101,10 +119,7 @@ fn draw(args: &RenderArgs, outputs: &Outputs) -> Result<Stats, Error> {
         threads: rayon::current_num_threads(),
         ..Stats::default()
     };
-
-    progress.stage("loading");
-    let scene = load(&args.scene, &args.picture.load_options())?;
-    stats.milliseconds.load = watch.lap();
+    stats.milliseconds.load = load;
 
     progress.stage("planning");
     let plan = Plan::new(&scene, &settings)?;
@@ -119,7 +134,7 @@ fn draw(args: &RenderArgs, outputs: &Outputs) -> Result<Stats, Error> {
     stats.milliseconds.render = watch.lap();
 
     progress.stage("writing");
-    save(&film, &args.output, &args.finish_options(), &outputs.layers)?;
+    save(&film, &outputs.picture, &finish, &outputs.layers)?;
     for (path, aovs) in &outputs.files {
         save_aovs(&film, aovs, path)?;
     }

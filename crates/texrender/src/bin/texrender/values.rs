@@ -3,10 +3,8 @@
 use fearless_simd::Level;
 use std::path::PathBuf;
 
-use glam::{DVec3, Vec3};
-use texrender::mipmap::{EwaTier, Tolerance};
-use texrender::sampler::transfer::srgb_to_linear;
-use texrender::{Aov, Background, BitDepth, EnvironmentSource, FilterChoice, ToneMap};
+use glam::DVec3;
+use texrender::{Aov, BitDepth, EnvironmentSource, Show};
 
 pub(crate) fn size(text: &str) -> Result<(u32, u32), String> {
     let parse = || {
@@ -68,21 +66,17 @@ pub(crate) fn simd(text: &str) -> Result<Level, String> {
     level.ok_or_else(|| format!("this machine has no {text}"))
 }
 
-pub(crate) fn tonemap(text: &str) -> Result<ToneMap, String> {
-    match text {
-        "neutral" => Ok(ToneMap::Neutral),
-        "aces" => Ok(ToneMap::Aces),
-        "none" => Ok(ToneMap::None),
-        _ => Err("choose neutral, aces or none".to_owned()),
-    }
-}
-
 pub(crate) fn bit_depth(text: &str) -> Result<BitDepth, String> {
     match text {
         "8" => Ok(BitDepth::Eight),
         "16" => Ok(BitDepth::Sixteen),
         _ => Err("choose 8 or 16".to_owned()),
     }
+}
+
+pub(crate) fn show(text: &str) -> Result<Show, String> {
+    let found = Show::ALL.into_iter().find(|show| show.name() == text);
+    found.ok_or_else(|| format!("choose {}", Show::ALL.map(Show::name).join(", ")))
 }
 
 pub(crate) fn aov(text: &str) -> Result<(Aov, PathBuf), String> {
@@ -110,68 +104,6 @@ pub(crate) fn environment(text: &str) -> Result<EnvironmentSource, String> {
         "studio" => EnvironmentSource::Studio,
         "none" => EnvironmentSource::None,
         path => EnvironmentSource::File(PathBuf::from(path)),
-    })
-}
-
-pub(crate) fn background(text: &str) -> Result<Background, String> {
-    match text {
-        "transparent" => return Ok(Background::Transparent),
-        "env" => return Ok(Background::Environment),
-        _ => {}
-    }
-    let codes = match text {
-        "black" => Some([0, 0, 0]),
-        "white" => Some([255, 255, 255]),
-        _ => hex_color(text),
-    };
-    codes
-        .map(|codes| {
-            Background::Color(Vec3::from(
-                codes.map(|code| srgb_to_linear(f32::from(code) / 255.0)),
-            ))
-        })
-        .ok_or_else(|| {
-            "write #rrggbb (an sRGB colour), black, white, transparent or env".to_owned()
-        })
-}
-
-/// `#rrggbb` or `#rgb`.
-fn hex_color(text: &str) -> Option<[u8; 3]> {
-    let digits = text.strip_prefix('#')?;
-    let nibbles: Option<Vec<u8>> = digits
-        .chars()
-        .map(|c| c.to_digit(16).and_then(|d| u8::try_from(d).ok()))
-        .collect();
-    match *nibbles?.as_slice() {
-        [r, g, b] => Some([r * 17, g * 17, b * 17]),
-        [r, s, g, h, b, c] => Some([r << 4 | s, g << 4 | h, b << 4 | c]),
-        _ => None,
-    }
-}
-
-pub(crate) fn filter(text: &str) -> Result<FilterChoice, String> {
-    match text {
-        "nearest" => return Ok(FilterChoice::Nearest),
-        "bilinear" => return Ok(FilterChoice::Bilinear),
-        "trilinear" => return Ok(FilterChoice::Trilinear),
-        "aniso" => return Ok(FilterChoice::Anisotropic(16.0)),
-        "file" => return Ok(FilterChoice::File),
-        "ewa" | "ewa:standard" => return Ok(FilterChoice::Elliptic(EwaTier::Standard)),
-        "ewa:fast" => return Ok(FilterChoice::Elliptic(EwaTier::Fast)),
-        "ewa:best" => return Ok(FilterChoice::Elliptic(EwaTier::Best)),
-        _ => {}
-    }
-    let number = |prefix| text.strip_prefix(prefix)?.parse::<f32>().ok();
-    let anisotropic = number("aniso:")
-        .filter(|n| (1.0..=64.0).contains(n))
-        .map(FilterChoice::Anisotropic);
-    let automatic = number("auto:")
-        .and_then(|rmse| Tolerance::new(rmse).ok())
-        .map(FilterChoice::Automatic);
-    anisotropic.or(automatic).ok_or_else(|| {
-        "choose nearest, bilinear, trilinear, aniso, aniso:N (N from 1 to 64), ewa, ewa:fast, ewa:best, \
-         auto:RMSE (an error above 0) or file"
-            .to_owned()
     })
 }
 
