@@ -36,8 +36,9 @@
 //! [`mapping`] computes (s,t) from where a point lies, with its Jacobian: parallel, perspective, per facet, triplanar,
 //! spherical, cylindrical and cube projection, and the sixteen two-stage mappings.
 //!
-//! # Patches
-//! [`BicubicPatch`] is a parametric surface whose (u,v) come for free; [`teapot`] holds the 32 best known.
+//! # Surfaces
+//! [`surface`] has Bézier patches, B-spline and NURBS surfaces, whose (u,v) come for free, with normals and tangents,
+//! and triangles within a tolerance of them that leave no cracks; [`teapot`] holds the 32 best known patches.
 //!
 //! # Conventions
 //! (s,t) has its origin at the top left, t down, as glTF. (u,v) are parameters of a surface; its front is the
@@ -52,7 +53,8 @@
 //! | attributes in f32 | 2⁻²⁴ of the result + 2⁻⁴⁹ of the range | any ratio of w |
 //! | derivatives of (s,t) | 1e-5 of the gradient's length | ratios of w to 2²⁰, slivers included |
 //! | mappings | 2⁻⁵² in (s,t); 1e-5 in derivatives | finite positions off the axis |
-//! | patch points | 1 ulp of the largest control coordinate | (u,v) in 0..=1 |
+//! | surface points | n·2⁻⁵⁰ of the largest control coordinate | degrees that sum to n, times the ratio of weights |
+//! | tessellation | the caller's tolerance, then one rounding to f32 | up to 1024 steps a side |
 //!
 //! # Limits
 //! No charts yet. Sums are in f64 and rounded once: this is the reference
@@ -66,15 +68,14 @@
 mod dual;
 pub mod mapping;
 pub mod packet;
-mod patch;
 mod perspective;
 pub mod planes;
 pub mod subdivision;
+pub mod surface;
 pub mod teapot;
 mod transform;
 pub mod unrolled;
 
-pub use patch::{BicubicPatch, PatchGrid};
 pub use perspective::{
     Interpolation, ScreenCoordinate, Weights, perspective_parameter, perspective_weights,
 };

@@ -15,7 +15,7 @@
 
 use glam::Vec3;
 
-use crate::BicubicPatch;
+use crate::surface::BezierPatch;
 
 /// Four control points of a quarter turn: (radius, 0), (radius, shoulder), (shoulder, radius), (0, radius).
 #[derive(Clone, Copy)]
@@ -128,43 +128,52 @@ const SPOUT: [Section; 7] = [
 ///
 /// # Examples
 /// ```
-/// let top = texcoord::teapot::patches()[0].point(glam::Vec2::ONE);
-/// assert_eq!(top, glam::Vec3::new(0.0, 0.0, 3.15));
+/// let top = texcoord::teapot::patches()[0].at(glam::DVec2::ONE);
+/// assert_eq!(top.position.as_vec3(), glam::Vec3::new(0.0, 0.0, 3.15));
 /// ```
 #[must_use]
-pub fn patches() -> [BicubicPatch; 32] {
-    core::array::from_fn(|k| match k {
+pub fn patches() -> [BezierPatch; 32] {
+    core::array::from_fn(|k| BezierPatch::bicubic(control_points(k)))
+}
+
+/// Rows along v of columns along u.
+type Control = [[Vec3; 4]; 4];
+
+fn control_points(k: usize) -> Control {
+    match k {
         0..24 => turned_patch(&PROFILES[k / 4], k % 4),
         _ => {
             let limb = if k < 28 { &HANDLE } else { &SPOUT };
             let first = 3 * (k / 2 % 2);
             let half = half_tube([0, 1, 2, 3].map(|row| limb[first + row]));
-            if k % 2 == 0 { half } else { mirrored(half) }
+            if k.is_multiple_of(2) {
+                half
+            } else {
+                mirrored(half)
+            }
         }
-    })
+    }
 }
 
 /// A quarter of a surface of revolution; rows from the bottom of the profile up.
-fn turned_patch(profile: &[Ring; 4], quarter: usize) -> BicubicPatch {
-    BicubicPatch {
-        control: core::array::from_fn(|row| {
-            let Ring {
-                radius,
-                shoulder,
-                height,
-            } = profile[3 - row];
-            let arc = [
-                [0.0, -radius],
-                [shoulder, -radius],
-                [radius, -shoulder],
-                [radius, 0.0],
-            ];
-            arc.map(|point| {
-                let [x, y] = turned(point, quarter).map(to_f32);
-                Vec3::new(x, y, height)
-            })
-        }),
-    }
+fn turned_patch(profile: &[Ring; 4], quarter: usize) -> Control {
+    core::array::from_fn(|row| {
+        let Ring {
+            radius,
+            shoulder,
+            height,
+        } = profile[3 - row];
+        let arc = [
+            [0.0, -radius],
+            [shoulder, -radius],
+            [radius, -shoulder],
+            [radius, 0.0],
+        ];
+        arc.map(|point| {
+            let [x, y] = turned(point, quarter).map(to_f32);
+            Vec3::new(x, y, height)
+        })
+    })
 }
 
 /// `quarter` quarter turns counter-clockwise seen from above: exact, and without a −0 that would tell a
@@ -180,33 +189,27 @@ fn turned([x, y]: [f64; 2], quarter: usize) -> [f64; 2] {
 }
 
 /// The half of a tube on the −y side.
-fn half_tube(sections: [Section; 4]) -> BicubicPatch {
-    BicubicPatch {
-        control: sections.map(
-            |Section {
-                 start: [x0, z0],
-                 end: [x1, z1],
-                 half_width,
-             }| {
-                [
-                    Vec3::new(x0, 0.0, z0),
-                    Vec3::new(x0, -half_width, z0),
-                    Vec3::new(x1, -half_width, z1),
-                    Vec3::new(x1, 0.0, z1),
-                ]
-            },
-        ),
-    }
+fn half_tube(sections: [Section; 4]) -> Control {
+    sections.map(
+        |Section {
+             start: [x0, z0],
+             end: [x1, z1],
+             half_width,
+         }| {
+            [
+                Vec3::new(x0, 0.0, z0),
+                Vec3::new(x0, -half_width, z0),
+                Vec3::new(x1, -half_width, z1),
+                Vec3::new(x1, 0.0, z1),
+            ]
+        },
+    )
 }
 
 /// The patch reflected in y = 0, read backwards along u so that its front stays outside.
-fn mirrored(patch: BicubicPatch) -> BicubicPatch {
+fn mirrored(control: Control) -> Control {
     let reflected = |p: Vec3| Vec3::new(p.x, 0.0 - p.y, p.z);
-    BicubicPatch {
-        control: patch
-            .control
-            .map(|[a, b, c, d]| [d, c, b, a].map(reflected)),
-    }
+    control.map(|[a, b, c, d]| [d, c, b, a].map(reflected))
 }
 
 /// Rounds a product of published decimals to the f32 nearest to it.

@@ -8,10 +8,10 @@
 mod mapping;
 mod oracle;
 mod packet;
-mod patch;
 mod perspective;
 mod planes;
 mod strategies;
 mod subdivision;
+mod surface;
 mod teapot;
 mod transform;

@@ -1,8 +1,7 @@
 //! Inputs that seek trouble: extreme ratios of w, slivers, points near edges and corners.
 
-use glam::{DVec3, Vec2, Vec3};
+use glam::{DVec3, Vec2};
 use proptest::prelude::*;
-use texcoord::BicubicPatch;
 
 /// Clip-space w with ratios up to 2²⁰, extremes often.
 pub(crate) fn w() -> impl Strategy<Value = f64> {
@@ -101,15 +100,4 @@ pub(crate) fn corner_st() -> impl Strategy<Value = [Vec2; 3]> {
 
 pub(crate) fn st(reach: f32) -> impl Strategy<Value = Vec2> {
     (-reach..=reach, -reach..=reach).prop_map(|(s, t)| Vec2::new(s, t))
-}
-
-/// Sixteen finite control points.
-pub(crate) fn bicubic_patch() -> impl Strategy<Value = BicubicPatch> {
-    proptest::collection::vec([-4.0..4.0f32, -4.0..4.0f32, -4.0..4.0f32], 16).prop_map(|points| {
-        BicubicPatch {
-            control: core::array::from_fn(|i| {
-                core::array::from_fn(|j| Vec3::from_array(points[4 * i + j]))
-            }),
-        }
-    })
 }

@@ -2,8 +2,9 @@
 
 use std::collections::HashMap;
 
-use glam::{Vec2, Vec3};
-use texcoord::{BicubicPatch, teapot};
+use glam::{DVec2, DVec3, Vec2, Vec3};
+use texcoord::surface::BezierPatch;
+use texcoord::teapot;
 
 const STEPS: u32 = 16;
 
@@ -12,8 +13,8 @@ fn bits(p: Vec3) -> [u32; 3] {
     p.to_array().map(f32::to_bits)
 }
 
-fn bounds(patches: &[BicubicPatch]) -> (Vec3, Vec3) {
-    let points = patches.iter().flat_map(|p| p.tessellate(64).positions);
+fn bounds(patches: &[BezierPatch]) -> (Vec3, Vec3) {
+    let points = patches.iter().flat_map(|p| p.grid(64).positions);
     points.fold((Vec3::MAX, Vec3::MIN), |(low, high), p| {
         (low.min(p), high.max(p))
     })
@@ -36,8 +37,8 @@ fn its_control_points_are_the_published_ones() {
     let count = |p: Vec3| {
         patches
             .iter()
-            .flat_map(|patch| patch.control.iter().flatten())
-            .filter(|&&q| q == p)
+            .flat_map(|patch| patch.control_points())
+            .filter(|q| q.as_vec3() == p)
             .count()
     };
     // Points as printed in the list of 306, each where two patches meet and share it, or inside one.
@@ -56,8 +57,8 @@ fn its_control_points_are_the_published_ones() {
     }
     let mut distinct: Vec<_> = patches
         .iter()
-        .flat_map(|patch| patch.control.iter().flatten())
-        .map(|&p| bits(p))
+        .flat_map(|patch| patch.control_points())
+        .map(|p| bits(p.as_vec3()))
         .collect();
     distinct.sort_unstable();
     distinct.dedup();
@@ -66,9 +67,9 @@ fn its_control_points_are_the_published_ones() {
 }
 
 /// How often each segment of the tessellation occurs, in either direction; collapsed ones are left out.
-fn segment_counts(patches: &[BicubicPatch]) -> HashMap<[[u32; 3]; 2], u32> {
+fn segment_counts(patches: &[BezierPatch]) -> HashMap<[[u32; 3]; 2], u32> {
     let mut counts = HashMap::new();
-    for grid in patches.iter().map(|p| p.tessellate(STEPS)) {
+    for grid in patches.iter().map(|p| p.grid(STEPS)) {
         for corners in &grid.triangles {
             let at = corners.map(|k| bits(grid.positions[k as usize]));
             if at[0] == at[1] || at[1] == at[2] || at[2] == at[0] {
@@ -111,10 +112,7 @@ fn it_is_closed_but_for_its_known_gaps() {
 #[test]
 fn its_normals_point_away_from_the_axis_on_the_body() {
     // Patches 12..20 are the body.
-    for grid in teapot::patches()[12..20]
-        .iter()
-        .map(|p| p.tessellate(STEPS))
-    {
+    for grid in teapot::patches()[12..20].iter().map(|p| p.grid(STEPS)) {
         for (p, n) in grid.positions.iter().zip(&grid.normals) {
             assert!(p.x * n.x + p.y * n.y > 0.0, "normal {n} at {p}");
         }
@@ -125,12 +123,12 @@ fn its_normals_point_away_from_the_axis_on_the_body() {
 fn its_handle_and_spout_face_outward() {
     for (grid, mid_z) in teapot::patches()[24..]
         .iter()
-        .map(|p| (p.tessellate(2), p.point(Vec2::splat(0.5)).y))
+        .map(|p| (p.grid(2), p.at(DVec2::splat(0.5)).position.y))
     {
         // The middle of a half tube is its farthest point from the plane y = 0.
         let normal = grid.normals[4];
         assert!(
-            normal.y * mid_z > 0.0,
+            f64::from(normal.y) * mid_z > 0.0,
             "{normal} on the side of y = {mid_z}"
         );
     }
@@ -141,17 +139,17 @@ fn its_poles_have_the_axis_for_normal() {
     let patches = teapot::patches();
     for u in [0.0, 0.1, 0.5, 0.9, 1.0] {
         for quarter in 0..4 {
-            let knob = patches[quarter].normal(Vec2::new(u, 1.0));
-            let bottom = patches[20 + quarter].normal(Vec2::new(u, 0.0));
-            assert!((knob - Vec3::Z).length() < 1e-6, "knob {knob}");
-            assert!((bottom + Vec3::Z).length() < 1e-6, "bottom {bottom}");
+            let knob = patches[quarter].at(DVec2::new(u, 1.0)).normal;
+            let bottom = patches[20 + quarter].at(DVec2::new(u, 0.0)).normal;
+            assert!((knob - DVec3::Z).length() < 1e-6, "knob {knob}");
+            assert!((bottom + DVec3::Z).length() < 1e-6, "bottom {bottom}");
         }
     }
 }
 
 #[test]
 fn its_winding_agrees_with_its_normals() {
-    for grid in teapot::patches().iter().map(|p| p.tessellate(STEPS)) {
+    for grid in teapot::patches().iter().map(|p| p.grid(STEPS)) {
         for corners in &grid.triangles {
             let [a, b, c] = corners.map(|k| grid.positions[k as usize]);
             let cross = (b - a).cross(c - a);

@@ -1,7 +1,8 @@
 //! The Utah teapot from its patches, as a vessel (body, rim, lid, bottom) and its limbs.
 
 use glam::{Vec2, Vec3};
-use texrender::texcoord::{PatchGrid, teapot};
+use texrender::texcoord::surface::SurfaceMesh;
+use texrender::texcoord::teapot;
 
 use super::ceramic::{HEIGHT, RINGS};
 use super::mesh::Mesh;
@@ -15,7 +16,7 @@ pub(super) fn vessel(scale: f32) -> Mesh {
     for (k, patch) in (0u8..24).zip(teapot::patches()) {
         let (ring, quarter) = (usize::from(5 - k / 4), f32::from(k % 4));
         let (low, high) = (RINGS[ring], RINGS[ring + 1]);
-        mesh.add(&upright(&patch.tessellate(STEPS), scale, |uv| {
+        mesh.add(&upright(&patch.grid(STEPS), scale, |uv| {
             let y = low + (high - low) * uv.y;
             Vec2::new((quarter + uv.x) * 0.5, 1.0 - y / HEIGHT)
         }));
@@ -30,7 +31,7 @@ pub(super) fn limbs(scale: f32) -> Mesh {
         let (side, stretch) = (f32::from(k % 2), f32::from(k / 2 % 2));
         // The handle ends in the body: it stays short of the gold at the spout's tip.
         let reach = if k < 28 { 0.86 } else { 1.0 };
-        mesh.add(&upright(&patch.tessellate(STEPS), scale, |uv| {
+        mesh.add(&upright(&patch.grid(STEPS), scale, |uv| {
             Vec2::new((side + uv.x) * 0.5, (stretch + uv.y) * 0.5 * reach)
         }));
     }
@@ -38,7 +39,7 @@ pub(super) fn limbs(scale: f32) -> Mesh {
 }
 
 /// From z up to y up, with other texture coordinates.
-fn upright(grid: &PatchGrid, scale: f32, st: impl Fn(Vec2) -> Vec2) -> Mesh {
+fn upright(grid: &SurfaceMesh, scale: f32, st: impl Fn(Vec2) -> Vec2) -> Mesh {
     let turned = |p: &Vec3| Vec3::new(p.x, p.z, -p.y);
     let area = |t: &&[u32; 3]| {
         let [a, b, c] = t.map(|i| grid.positions[i as usize]);
