@@ -111,3 +111,20 @@ fn sharpness_out_of_range_is_refused() {
         );
     }
 }
+
+#[test]
+fn the_back_of_a_plane_runs_the_other_way_in_s_alone() {
+    let p = DVec3::new(1.0, 2.0, 3.0);
+    let st = |backs, n: DVec3| Facets { backs }.at(p, n).unwrap().st().to_array();
+    for (axis, front) in [
+        (DVec3::X, [2.0, 3.0]),
+        (DVec3::Y, [3.0, 1.0]),
+        (DVec3::Z, [1.0, 2.0]),
+    ] {
+        for backs in [BackFacets::Readable, BackFacets::Mirrored] {
+            assert_eq!(st(backs, axis), front);
+        }
+        assert_eq!(st(BackFacets::Readable, -axis), [-front[0], front[1]]);
+        assert_eq!(st(BackFacets::Mirrored, -axis), front);
+    }
+}

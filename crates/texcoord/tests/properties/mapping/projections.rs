@@ -267,6 +267,20 @@ fn quarter_turns_are_exact() {
 }
 
 #[test]
+fn an_angle_beyond_a_quarter_turn_comes_back() {
+    // Where an angle near π/2 was rounded as a whole it came back 4.05 ulp off.
+    let p = DVec3::new(-0.842_867_570_312_532, 1.787_266_834_330_929_3, 0.0);
+    let chart = Spherical {
+        s: TurnConvention::Centred,
+        t: PolarConvention::FromTop,
+    };
+    let error = (chart.inverse(chart.at(p).unwrap().stp) - p)
+        .abs()
+        .max_element();
+    assert!(error <= 3.0 * ULP * p.length(), "{error:e}");
+}
+
+#[test]
 fn sizes_from_the_smallest_to_the_largest_keep_their_angles() {
     for size in [5e-324, 1e-300, 1.0, 1e300] {
         let mapped = Spherical::PHI_THETA
