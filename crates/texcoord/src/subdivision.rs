@@ -19,11 +19,6 @@
 //! λᵢ·(W/wᵢ − 1); the largest sum of their positive parts under Σλᵢ = 1 and Σλᵢ·(W/wᵢ − 1) = 0 is that of a linear
 //! program with two constraints, so at most two λᵢ are not 0: it lies on an edge.
 //!
-//! **T-joints.** Two triangles that share an edge must halve it the same number of times. Where only one does, its new
-//! vertex lies on the other's edge up to the rounding of screen positions (pixels crack there), and (s,t) jumps across
-//! the edge by up to [`screen_linear_error`]. Take the levels of an edge from its own two w, or one number for the
-//! mesh.
-//!
 //! # Source
 //! Heckbert & Moreton 1991, "Interpolation for Polygon Texture Mapping and Shading"; the bounds are derived here.
 
@@ -54,8 +49,11 @@ pub fn screen_linear_error(w0: f64, w1: f64) -> f64 {
 /// How many times an edge, or a triangle with these nearest and farthest w, must be halved in space until screen-linear
 /// interpolation in the pieces stays within `tolerance`.
 ///
-/// A triangle halved once becomes four. Neighbours must agree on a shared edge; see the T-joints in
-/// [`crate::subdivision`].
+/// The least L with 2⁻ᴸ ≤ 2·√(tolerance/c) + tolerance, c = far/near − 1. A triangle halved once becomes four.
+///
+/// **T-joints.** Two triangles that share an edge must halve it the same number of times. Where only one does, its new
+/// vertex lies on the other's edge up to the rounding of screen positions (pixels crack there), and (s,t) jumps across
+/// the edge by up to [`screen_linear_error`]. Take the levels of an edge from its own two w, or one number for the mesh.
 ///
 /// `w0`, `w1`: clip-space w, finite and > 0. `tolerance`: a fraction of the attribute's range, > 0 (a texel of N is 1/N
 /// where the range is the whole texture). `None` for others and NaN: no number of halvings is enough.

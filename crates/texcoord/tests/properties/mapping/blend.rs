@@ -15,7 +15,9 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(2000))]
 
     #[test]
-    fn weights_sum_to_one_and_are_the_powers_of_the_normal(normal in direction(), k in 1.0..9.0f64, backs in backs(), size in -300..300i32) {
+    fn weights_sum_to_one_and_are_the_powers_of_the_normal(
+        normal in direction(), k in 1.0..9.0f64, backs in backs(), size in -300..300i32,
+    ) {
         let blend = Triplanar::new(k, backs).unwrap();
         let found = blend.at(DVec3::ONE, normal * 10f64.powi(size)).unwrap();
         prop_assert!((found.weights.element_sum() - 1.0).abs() <= SUM_BOUND);

@@ -40,7 +40,9 @@ proptest! {
     }
 
     #[test]
-    fn a_component_that_all_control_points_share_comes_back_exactly(net in bezier_net(), z in -4.0..4.0f64, u in 0.0..=1.0f64, v in 0.0..=1.0f64) {
+    fn a_component_that_all_control_points_share_comes_back_exactly(
+        net in bezier_net(), z in -4.0..4.0f64, u in 0.0..=1.0f64, v in 0.0..=1.0f64,
+    ) {
         let mut net = net;
         net.control.iter_mut().for_each(|p| p.z = z);
         net.weights.fill(1.0);
@@ -86,7 +88,9 @@ proptest! {
     }
 
     #[test]
-    fn a_shared_edge_is_the_same_bits_whichever_way_it_is_read(net in bezier_net(), other in bezier_net(), n in 1u32..40) {
+    fn a_shared_edge_is_the_same_bits_whichever_way_it_is_read(
+        net in bezier_net(), other in bezier_net(), n in 1u32..40,
+    ) {
         // A patch whose last column is the first row of `net`, read backwards; its other columns are its own.
         let rows = net.columns;
         let own = other.control.iter().cycle().zip(other.weights.iter().cycle());

@@ -82,7 +82,9 @@ proptest! {
     }
 
     #[test]
-    fn surfaces_are_their_sums((knots, control, weights) in nurbs_net(knots(), knots()), u in 0.0..=1.0f64, v in 0.0..=1.0f64) {
+    fn surfaces_are_their_sums(
+        (knots, control, weights) in nurbs_net(knots(), knots()), u in 0.0..=1.0f64, v in 0.0..=1.0f64,
+    ) {
         let surface = NurbsSurface::new(knots.clone(), &control, &weights).unwrap();
         let found = surface.at(DVec2::new(u, v));
         let truth = by_recursion(&knots, &control, &weights, [in_domain(&knots[0], u), in_domain(&knots[1], v)]);
@@ -90,7 +92,9 @@ proptest! {
     }
 
     #[test]
-    fn tangents_are_the_limit_of_differences((knots, control, weights) in nurbs_net(knots(), knots()), u in 0.01..0.99f64, v in 0.01..0.99f64) {
+    fn tangents_are_the_limit_of_differences(
+        (knots, control, weights) in nurbs_net(knots(), knots()), u in 0.01..0.99f64, v in 0.01..0.99f64,
+    ) {
         let h = 1e-5;
         for (axis, t) in [u, v].into_iter().enumerate() {
             let [low, high] = knots[axis].domain();
@@ -111,7 +115,9 @@ proptest! {
     }
 
     #[test]
-    fn bezier_patches_are_the_surface((knots, control, weights) in nurbs_net(knots(), knots()), s in 0.0..=1.0f64, t in 0.0..=1.0f64) {
+    fn bezier_patches_are_the_surface(
+        (knots, control, weights) in nurbs_net(knots(), knots()), s in 0.0..=1.0f64, t in 0.0..=1.0f64,
+    ) {
         let surface = NurbsSurface::new(knots.clone(), &control, &weights).unwrap();
         for (patch, [low, high]) in surface.bezier_patches() {
             let local = DVec2::new(s, t);
