@@ -10,6 +10,7 @@
 //! # Source
 //! Griewank & Walther 2008, "Evaluating Derivatives", chapter 3.
 
+use core::f64::consts::TAU;
 use core::ops::{Add, Div, Mul, Neg, Sub};
 
 use glam::DVec3;
@@ -78,24 +79,37 @@ impl<const N: usize> Dual<N> {
         }
     }
 
-    /// The angle of (x, y) = (`x`, self) in radians, −π < φ ≤ π. At the origin it is 0 with slopes 0.
-    pub(crate) fn atan2(self, x: Self) -> Self {
+    /// The angle of (x, y) = (`x`, self) in turns, −½ < φ/2π ≤ ½. At the origin it is 0 with slopes 0.
+    pub(crate) fn turn(self, x: Self) -> Self {
         let unit = power_of_two_near(self.value.abs().max(x.value.abs()));
-        // Adding 0 makes −0 a 0: the angle π never comes as −π.
+        // Adding 0 makes −0 a 0: the turn ½ never comes as −½.
         let [a, b] = [x.value / unit + 0.0, self.value / unit + 0.0];
         let squared = a * a + b * b;
         let slope = |i: usize| {
             if squared == 0.0 {
                 0.0
             } else {
-                (a * self.slope[i] - b * x.slope[i]) / squared / unit
+                (a * self.slope[i] - b * x.slope[i]) / squared / unit / TAU
             }
         };
         Self {
-            value: libm::atan2(b, a),
+            value: turn_of(a, b),
             slope: core::array::from_fn(slope),
         }
     }
+}
+
+/// The angle of (x, y) in turns, as an eighth at most beside exact quarters: within 2⁻⁵⁴.
+fn turn_of(x: f64, y: f64) -> f64 {
+    let (near, far) = (x.abs().min(y.abs()), x.abs().max(y.abs()));
+    let eighth = libm::atan2(near, far) / TAU;
+    let quarter = if y.abs() > x.abs() {
+        0.25 - eighth
+    } else {
+        eighth
+    };
+    let half = if x < 0.0 { 0.5 - quarter } else { quarter };
+    if y < 0.0 { -half } else { half }
 }
 
 impl<const N: usize> Add for Dual<N> {

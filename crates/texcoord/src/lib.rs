@@ -21,7 +21,8 @@
 //! [`perspective_parameter`] is the law for an edge, s(t) = t·w₀/(w₁ + t·(w₀ − w₁)). [`perspective_weights`] is
 //! the law for a triangle, with closed-form derivatives: no 2×2 quads, no helper pixels. [`Weights`]
 //! interpolates attributes and texture coordinates ([`ScreenCoordinate`]), also from a clipped piece. [`Interpolation`]
-//! names the screen-linear mode beside it; [`subdivision`] tells how far that is off and how many halvings mend it.
+//! names the screen-linear mode beside it; [`screen_linear_error`] tells how far that is off, [`subdivision_levels`] how
+//! many halvings mend it.
 //!
 //! # Packets
 //! [`packet`] is the same law for 16 pixels at once, each in a triangle of its own; [`planes`] is it for 16 in a row of
@@ -37,8 +38,8 @@
 //! spherical, cylindrical and cube projection, and the sixteen two-stage mappings.
 //!
 //! # Surfaces
-//! [`surface`] has Bézier patches, B-spline and NURBS surfaces, whose (u,v) come for free, with normals and tangents, and
-//! triangles within a tolerance of them that leave no cracks; [`teapot`] holds the 32 best known patches.
+//! [`surface`] has Bézier patches, B-spline and NURBS surfaces, whose (u,v) come for free, with normals and tangents,
+//! and triangles within a tolerance of them that leave no cracks; [`teapot`] holds the 32 best known patches.
 //!
 //! # Conventions
 //! (s,t) has its origin at the top left, t down, as glTF. (u,v) are parameters of a surface; its front is the
@@ -52,13 +53,14 @@
 //! | subdivision levels | least that keep the tolerance | tolerances of 2⁻⁴⁴ and more |
 //! | attributes in f32 | 2⁻²⁴ of the result + 2⁻⁴⁹ of the range | any ratio of w |
 //! | derivatives of (s,t) | 1e-5 of the gradient's length | ratios of w to 2²⁰, slivers included |
-//! | mappings | 2⁻⁵² in (s,t); 1e-5 in derivatives | finite positions off the axis |
+//! | mappings: angles, faces | 2⁻⁵² in (s,t); back within 4·2⁻⁵² of the point's size | finite positions |
+//! | mappings: derivatives | 1e-5 | off the axis, rays that do not graze |
 //! | surface points | n·2⁻⁵⁰ of the largest control coordinate | degrees that sum to n, times the ratio of weights |
 //! | tessellation | the caller's tolerance, then one rounding to f32 | up to 1024 steps a side |
 //!
 //! # Limits
-//! No charts yet. Sums are in f64 and rounded once: this is the reference
-//! that faster paths are held against.
+//! No charts yet. Sums are in f64 and rounded once: this is the reference that faster paths are held against. Mappings and
+//! surfaces have no packets.
 //!
 //! # Sources
 //! Heckbert & Moreton 1991, "Interpolation for Polygon Texture Mapping and Shading"; Khronos,
@@ -70,7 +72,7 @@ pub mod mapping;
 pub mod packet;
 mod perspective;
 pub mod planes;
-pub mod subdivision;
+mod subdivision;
 pub mod surface;
 pub mod teapot;
 mod transform;

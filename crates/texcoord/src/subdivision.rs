@@ -16,15 +16,11 @@
 //! ```
 //!
 //! The same holds inside a triangle with its nearest and farthest w. With W the depth at a point, the weights differ by
-//! λᵢ·(W/wᵢ − 1); the largest sum of their positive parts under Σλᵢ = 1 and Σλᵢ·(W/wᵢ − 1) = 0 is that of a linear program
-//! with two constraints, so at most two λᵢ are not 0: it lies on an edge.
-//!
-//! **T-joints.** Two triangles that share an edge must halve it the same number of times. Where only one does, its new
-//! vertex lies on the other's edge up to the rounding of screen positions (pixels crack there), and (s,t) jumps across the
-//! edge by up to [`screen_linear_error`]. Take the levels of an edge from its own two w, or one number for the mesh.
+//! λᵢ·(W/wᵢ − 1); the largest sum of their positive parts under Σλᵢ = 1 and Σλᵢ·(W/wᵢ − 1) = 0 is that of a linear
+//! program with two constraints, so at most two λᵢ are not 0: it lies on an edge.
 //!
 //! # Source
-//! Heckbert & Moreton 1991, "Interpolation for Polygon Texture Mapping and Shading", section 5; the bounds are derived here.
+//! Heckbert & Moreton 1991, "Interpolation for Polygon Texture Mapping and Shading"; the bounds are derived here.
 
 /// The largest difference between screen-linear and perspective-correct interpolation along an edge, or over a triangle
 /// whose nearest and farthest corners these are, as a fraction of the attribute's range: |w₀ − w₁|/(√w₀ + √w₁)².
@@ -53,8 +49,11 @@ pub fn screen_linear_error(w0: f64, w1: f64) -> f64 {
 /// How many times an edge, or a triangle with these nearest and farthest w, must be halved in space until screen-linear
 /// interpolation in the pieces stays within `tolerance`.
 ///
-/// A triangle halved once becomes four. Neighbours must agree on a shared edge; see the T-joints in
-/// [`crate::subdivision`].
+/// The least L with 2⁻ᴸ ≤ 2·√(tolerance/c) + tolerance, c = far/near − 1. A triangle halved once becomes four.
+///
+/// **T-joints.** Two triangles that share an edge must halve it the same number of times. Where only one does, its new
+/// vertex lies on the other's edge up to the rounding of screen positions (pixels crack there), and (s,t) jumps across
+/// the edge by up to [`screen_linear_error`]. Take the levels of an edge from its own two w, or one number for the mesh.
 ///
 /// `w0`, `w1`: clip-space w, finite and > 0. `tolerance`: a fraction of the attribute's range, > 0 (a texel of N is 1/N
 /// where the range is the whole texture). `None` for others and NaN: no number of halvings is enough.
@@ -86,8 +85,8 @@ pub fn subdivision_levels(w0: f64, w1: f64, tolerance: f64) -> Option<u32> {
 /// Fraction along an edge in space where its image, halved `levels` times in space, is interpolated screen-linearly in
 /// each piece: [`crate::perspective_parameter`] in the limit, t itself for 0.
 ///
-/// `t`: 0..=1, measured from the end whose clip-space w is `w0`. `w0`, `w1`: > 0. `levels` above 1000 count as 1000, where
-/// pieces are below the rounding of f64. NaN is passed on.
+/// `t`: 0..=1, measured from the end whose clip-space w is `w0`. `w0`, `w1`: > 0. `levels` above 1000 count as 1000,
+/// where pieces are below the rounding of f64. NaN is passed on.
 ///
 /// # Accuracy
 /// Off [`crate::perspective_parameter`] by the tolerance that `levels` keeps, and by 2⁻⁴⁸.

@@ -73,11 +73,9 @@ impl Cylindrical {
     /// # Errors
     /// [`MappingError::Size`] where `half_height` is not a finite length above 0 or too long for its double.
     pub fn of_half_height(s: TurnConvention, half_height: f64) -> Result<Self, MappingError> {
-        Ok(Self {
-            s,
-            lift: half_height,
-            height: positive("height", 2.0 * half_height)?,
-        })
+        let lift = positive("half height", half_height)?;
+        let height = positive("height", 2.0 * lift)?;
+        Ok(Self { s, lift, height })
     }
 
     /// The coordinate of a point. `None` for a position that is not finite.

@@ -10,7 +10,7 @@ use crate::dual::DualVec3;
 /// p is what the third row gives, for [`planar`](Self::planar) the height over the plane.
 ///
 /// # Source
-/// Heckbert 1986, "Survey of Texture Mapping", "Parameterization of planes".
+/// Heckbert 1986, "Survey of Texture Mapping".
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ParallelProjection {
     matrix: DAffine3,

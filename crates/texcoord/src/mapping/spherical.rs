@@ -1,5 +1,3 @@
-use core::f64::consts::PI;
-
 use glam::{DVec2, DVec3};
 
 use super::mapped_point::SlopedCoordinate;
@@ -120,7 +118,7 @@ impl Spherical {
         let DualVec3 { x, y, z } = position;
         position.value().is_finite().then(|| {
             let from_axis = x.hypot(y);
-            let polar = from_axis.atan2(z) / PI;
+            let polar = from_axis.turn(z) * 2.0;
             let t = match self.t {
                 PolarConvention::FromTop => polar,
                 PolarConvention::FromBottom => -polar + 1.0,

@@ -11,12 +11,12 @@ use crate::dual::{Dual, DualVec3};
 ///   wᵢ = |nᵢ|ᵏ / Σⱼ |nⱼ|ᵏ
 /// ```
 ///
-/// k is the sharpness: 1 blends everywhere, large values come near [`Facets`]. A normal that is zero or not finite gives
-/// each plane 1/3.
+/// k is the sharpness: 1 blends everywhere, large values come near [`Facets`]. A normal that is zero or not finite
+/// gives each plane 1/3.
 ///
 /// A normal map is read once per plane, in the plane's own frame [T, B, outward] of [`Facets::frame`] for the face that
 /// the point reports. Carried into mapping space and blended there, the result is Σ wᵢ·(T·x + B·y + outward·z), then
-/// normalised; where the surface's own normal should stay visible, add the tangential parts to it: n + Σ wᵢ·(T·x + B·y).
+/// normalised. Where the surface's own normal n should stay visible it is n + Σ wᵢ·(T·x + B·y), its tangential part.
 ///
 /// # Accuracy
 /// Weights within 2⁻⁵⁰ relative for k ≤ 8; they sum to 1 within 2⁻⁵¹.

@@ -51,7 +51,7 @@ impl TurnConvention {
 
     /// s of the direction (x, y); on the axis that of +x, with slopes 0.
     pub(super) fn evaluate<const N: usize>(self, x: Dual<N>, y: Dual<N>) -> Dual<N> {
-        let turn = y.atan2(x) / TAU;
+        let turn = y.turn(x);
         Dual {
             value: self.s_of_turn(turn.value),
             ..turn

@@ -103,8 +103,8 @@ impl BezierPatch {
     /// The point at `uv`, with its frame. (u,v) in 0..=1 each; beyond, the polynomial goes on. NaN is passed on to the
     /// position.
     ///
-    /// Where an edge is collapsed to a point, such as the pole of a teapot's lid, ∂u × ∂v is 0 and normal and tangent are
-    /// their limits from inside the patch, in closed form through ∂²P/∂u∂v. Where these vanish too, they are taken
+    /// Where an edge is collapsed to a point, such as the pole of a teapot's lid, ∂u × ∂v is 0 and normal and tangent
+    /// are their limits from inside the patch, in closed form through ∂²P/∂u∂v. Where these vanish too, they are taken
     /// 1/1024 of the way to the middle, and for a patch without area the normal is +z. Both always have length 1 where
     /// the point is finite.
     ///
@@ -120,10 +120,10 @@ impl BezierPatch {
 
     /// Evaluates (n + 1)² points row by row, u fastest, `n` steps along each side; 2·n² triangles.
     ///
-    /// A point on an edge of the patch depends on the control points of that edge alone and is the same, to the bit, read
-    /// from either end: patches that share an edge's control points (and weights) meet without a crack. Normals across
-    /// such an edge agree as far as the surfaces are smooth. Triangles at an edge that is collapsed to a point have no
-    /// area and are still listed; [`super::tessellate`] leaves them out and divides by tolerance.
+    /// A point on an edge of the patch depends on the control points of that edge alone and is the same, to the bit,
+    /// read from either end: patches that share an edge's control points (and weights) meet without a crack. Normals
+    /// across such an edge agree as far as the surfaces are smooth. Triangles at an edge that is collapsed to a point
+    /// have no area and are still listed; [`super::tessellate`] leaves them out and divides by tolerance.
     ///
     /// # Panics
     /// If `n` is 0 or above 1024.

@@ -4,25 +4,22 @@ use glam::DVec4;
 
 use super::KnotVector;
 
-/// Control points of the Bézier pieces of the curve over `control`, p to a span and one more: the last of a piece is
-/// the first of the next.
+/// Control points of the Bézier pieces of the curve over `control`, p to a span and one more: the last of a piece is the
+/// first of the next, which has the same bits from both spans: there one share of each round is 0.
 ///
-/// Each blossom is the mean of two, with its arguments in either order, and a point between two pieces the mean of theirs:
-/// a curve that is given backwards has the same points backwards, to the bit where its knots are.
+/// Each blossom is the mean of two, with its arguments in either order: a curve that is given backwards has the same
+/// points backwards, to the bit where its knots are.
 pub(super) fn bezier_net(knots: &KnotVector, control: &[DVec4]) -> Vec<DVec4> {
     let p = knots.degree();
     let mut net: Vec<DVec4> = Vec::new();
     for span in knots.spans() {
         let ends = [knots.knots()[span], knots.knots()[span + 1]];
-        for j in 0..=p {
+        let first = usize::from(!net.is_empty());
+        for j in first..=p {
             let up = arguments(ends, p - j, p);
             let down: Vec<f64> = up.iter().rev().copied().collect();
             let [one, other] = [up, down].map(|x| blossom(knots, control, span, &x));
-            let point = (one + other) * 0.5;
-            match net.last_mut() {
-                Some(shared) if j == 0 => *shared = (*shared + point) * 0.5,
-                _ => net.push(point),
-            }
+            net.push((one + other) * 0.5);
         }
     }
     net

@@ -6,12 +6,12 @@
 //!   ⅛·(a²·M_uu + 2·a·b·M_uv + b²·M_vv)      M the largest second derivatives over the box
 //! ```
 //!
-//! With the Taylor remainder at the corners vᵢ the error at x is ½·|Σ λᵢ·(vᵢ − x)ᵀ·H·(vᵢ − x)|, and Σ λᵢ·(vᵢ − x)² is the
-//! variance of a coordinate that spans a, a²/4 at most.
+//! With the Taylor remainder at the corners vᵢ the error at x is ½·|Σ λᵢ·(vᵢ − x)ᵀ·H·(vᵢ − x)|, and Σ λᵢ·(vᵢ − x)² is
+//! the variance of a coordinate that spans a, a²/4 at most.
 //!
 //! # Source
-//! Filip, Magedson & Markot 1986, "Surface algorithms using bounds on derivatives" (right triangles; the step above lifts
-//! that).
+//! Filip, Magedson & Markot 1986, "Surface algorithms using bounds on derivatives" (right triangles; the step above
+//! lifts that).
 
 use glam::{DVec3, DVec4, Vec4Swizzles};
 
@@ -25,9 +25,9 @@ pub(super) struct DerivativeBounds {
 impl DerivativeBounds {
     /// Bounds for the rational patch over a net of `columns` points a row; a single row is a curve along u.
     ///
-    /// Derivatives of a Bézier net are Bézier nets of its differences, in the hull of these. From those of (w·P, w) follow
-    /// those of P by Leibniz' rule: w·P⁽ᵅ⁾ = (wP)⁽ᵅ⁾ − Σ C(α,β)·w⁽ᵝ⁾·P⁽ᵅ⁻ᵝ⁾ over 0 < β ≤ α. P counts from the middle of the first
-    /// and last control point. Read backwards, a curve has the same bounds to the bit.
+    /// Derivatives of a Bézier net are Bézier nets of its differences, in the hull of these. From those of (w·P, w)
+    /// follow those of P by Leibniz' rule: w·P⁽ᵅ⁾ = (wP)⁽ᵅ⁾ − Σ C(α,β)·w⁽ᵝ⁾·P⁽ᵅ⁻ᵝ⁾ over 0 < β ≤ α. P counts from the
+    /// middle of the first and last control point. Read backwards, a curve has the same bounds to the bit.
     pub(super) fn of_net(net: &[DVec4], columns: usize) -> Self {
         let ends = [net[0], net[net.len() - 1]].map(|p| p.xyz() / p.w);
         let origin = (ends[0] + ends[1]) * 0.5;

@@ -29,9 +29,10 @@ impl KnotVector {
     /// A knot vector, checked.
     ///
     /// # Errors
-    /// [`SurfaceError::Degree`] for degree 0 or above 255; [`SurfaceError::KnotCount`] for less than 2·(degree + 1) knots;
-    /// [`SurfaceError::KnotOrder`] where one falls or is not finite; [`SurfaceError::KnotMultiplicity`] where one inside
-    /// stands more often than the degree, or at an end more often than the degree + 1; [`SurfaceError::EmptyDomain`] where t_p = t_n.
+    /// [`SurfaceError::Degree`] for degree 0 or above 255; [`SurfaceError::KnotCount`] for less than 2·(degree + 1)
+    /// knots; [`SurfaceError::KnotOrder`] where one falls or is not finite; [`SurfaceError::KnotMultiplicity`] where
+    /// one inside stands more often than the degree, or at an end more often than the degree + 1;
+    /// [`SurfaceError::EmptyDomain`] where t_p = t_n.
     pub fn new(degree: usize, knots: Vec<f64>) -> Result<Self, SurfaceError> {
         if !(1..=MAX_DEGREE).contains(&degree) {
             return Err(SurfaceError::Degree { degree });

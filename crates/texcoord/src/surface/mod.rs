@@ -1,7 +1,7 @@
 //! Parametric surfaces, whose (u,v) are texture coordinates that come for free.
 //!
-//! [`BezierPatch`] is a patch of any degree, [`NurbsSurface`] a surface over [`KnotVector`]s; both may be rational. Each
-//! gives points with their tangents and normals in closed form ([`PatchPoint`]), limits included where an edge is
+//! [`BezierPatch`] is a patch of any degree, [`NurbsSurface`] a surface over [`KnotVector`]s; both may be rational.
+//! Each gives points with their tangents and normals in closed form ([`PatchPoint`]), limits included where an edge is
 //! collapsed. [`tessellate`] makes triangles within a tolerance, in object units or on the screen, that leave no cracks
 //! between patches.
 //!

@@ -67,7 +67,8 @@ impl NurbsSurface {
         Self::new(knots, control, &vec![1.0; control.len()])
     }
 
-    /// The point at `uv` in 0..=1 over the domain, with its frame; beyond, the nearest point of the domain; NaN counts as 0.
+    /// The point at `uv` in 0..=1 over the domain, with its frame; beyond, the nearest point of the domain; NaN counts
+    /// as 0.
     ///
     /// Derivatives are with respect to this (u,v). Normals and tangents at collapsed edges as those of
     /// [`BezierPatch::at`].
@@ -119,7 +120,8 @@ impl NurbsSurface {
         patches
     }
 
-    /// Triangles within `tolerance` of the surface, one mesh for each pair of spans, without cracks: see [`tessellate`].
+    /// Triangles within `tolerance` of the surface, one mesh for each pair of spans, without cracks: see
+    /// [`tessellate`].
     ///
     /// (u,v) of the meshes is that of the whole surface.
     ///

@@ -1,22 +1,23 @@
 //! Triangles within a tolerance of the surface, without cracks between patches.
 //!
 //! ```text
-//!   +--+--+--+--+     Each edge of a patch is divided by its own control points alone, so both patches that share it divide it
-//!   |\/|\/|\/|\/|     alike. Inside stands a regular grid, as fine as the patch needs. A strip between them joins the two
-//!   +--+-----+--+     numbers of steps. It is as thin as the error of its triangles asks: where a straight edge, of one step,
-//!   |  | grid|  |     borders a curved inside, it hugs the edge.
-//!   +--+-----+--+
+//!   +--+--+--+--+     Each edge of a patch is divided by its own control points alone, so both patches that
+//!   |\/|\/|\/|\/|     share it divide it alike. Inside stands a regular grid, as fine as the patch needs. A
+//!   +--+-----+--+     strip between them joins the two numbers of steps. It is as thin as the error of its
+//!   |  | grid|  |     triangles asks: where a straight edge, of one step, borders a curved inside, it hugs the
+//!   +--+-----+--+     edge.
 //! ```
 //!
-//! With T the tolerance and M the bounds of [`super::bounds`]: an edge takes steps of l² ≤ 4T/M_uu(edge), half the tolerance.
-//! The grid has cells of a by b that keep T. The strip along an edge of steps no longer than a is as high as a cell, b; along
-//! one of longer steps l, where M_uu ≤ M_uu(edge) + h·M_uuv, the other half of the tolerance gives its height h:
+//! With T the tolerance and M the bounds of [`super::bounds`]: an edge takes steps of l² ≤ 4T/M_uu(edge), half the
+//! tolerance. The grid has cells of a by b that keep T. The strip along an edge of steps no longer than a is as high as
+//! a cell, b; along one of longer steps l, where M_uu ≤ M_uu(edge) + h·M_uuv, the other half of the tolerance gives its
+//! height h:
 //!
 //! ```text
 //!   (l²·M_uuv + 2·l·M_uv)·h/8 + M_vv·h²/8 ≤ T/2
 //! ```
 
-use glam::{DVec2, DVec3, DVec4};
+use glam::{DVec2, DVec3, DVec4, Vec4Swizzles};
 
 use super::bounds::{DerivativeBounds, largest_scale};
 use super::de_casteljau::Fraction;
@@ -28,23 +29,24 @@ const MAX_STEPS: u32 = 1024;
 /// Triangles within `tolerance` of patches, one mesh for each, without cracks between them.
 ///
 /// `tolerance`: the largest distance of a point of the surface from its triangle, in object units times `scale`.
-/// `scale`: 1 everywhere for a tolerance in object units; pixels per unit at a point (for an eye: focal length in pixels
-/// over distance) for one on the screen. It is asked at control points, and the largest answer counts.
+/// `scale`: 1 everywhere for a tolerance in object units; pixels per unit at a point (for an eye: focal length in
+/// pixels over distance) for one on the screen. It is asked at control points, and the largest answer counts: where it
+/// is larger between them, the error on the screen is larger in proportion.
 ///
 /// An edge is divided by a rule that looks at its own control points (and weights) only, and its points depend on these
 /// only: patches that share an edge's control points, in either order, share all vertices along it to the bit, whatever
-/// the rest of them is. (u,v) of each patch is in 0..=1. An edge that is collapsed to a point stays one, with a (u,v) for each
-/// triangle there; triangles without area are left out.
+/// the rest of them is. (u,v) of each patch is in 0..=1. An edge that is collapsed to a point stays one, with a (u,v)
+/// for each triangle there; triangles without area are left out.
 ///
 /// # Errors
 /// [`SurfaceError::Tolerance`] where it is not above 0, [`SurfaceError::Scale`] where the scale is negative or not
 /// finite, [`SurfaceError::TooFine`] where an edge or a patch needs more than 1024 steps.
 /// # Accuracy
-/// The tolerance holds for the surface in f64; positions are then rounded to f32. Where the scale varies, the strip along
-/// an edge keeps the larger of the patch's and that edge's tolerance.
+/// The tolerance holds for the surface in f64; positions are then rounded to f32. Where the scale varies, the strip
+/// along an edge keeps the larger of the patch's and that edge's tolerance.
 /// # Source
-/// Bounds: Filip, Magedson & Markot 1986, "Surface algorithms using bounds on derivatives". Edges and strips: Moreton 2001,
-/// "Watertight Tessellation using Forward Differencing".
+/// Bounds: Filip, Magedson & Markot 1986, "Surface algorithms using bounds on derivatives". Edges and strips: Moreton
+/// 2001, "Watertight Tessellation using Forward Differencing".
 /// # Examples
 /// ```
 /// use texcoord::{surface, teapot};
@@ -170,12 +172,21 @@ fn divided(
     scale: &impl Fn(DVec3) -> f64,
 ) -> Result<Side, SurfaceError> {
     let largest = largest_scale(edge.iter().copied(), scale)?;
-    if edge.iter().all(|p| *p == edge[0]) {
+    if is_collapsed(edge) {
         return Ok(Side::Collapsed);
     }
     let bound = DerivativeBounds::of_net(edge, edge.len()).uu();
     let steps = (bound * largest / (4.0 * tolerance)).sqrt();
     steps_of(steps).map(Side::Steps)
+}
+
+/// Whether the control points are one, up to the rounding of their weights.
+fn is_collapsed(edge: &[DVec4]) -> bool {
+    let point = |p: &DVec4| p.xyz() / p.w;
+    let middle = (point(&edge[0]) + point(&edge[edge.len() - 1])) * 0.5;
+    let rounding = 4.0 * f64::EPSILON * middle.abs().max_element();
+    edge.iter()
+        .all(|p| (point(p) - middle).abs().max_element() <= rounding)
 }
 
 /// A number of steps, rounded up, at least 1.
@@ -208,7 +219,7 @@ fn plain_grid(sides: [Side; 4], bounds: &DerivativeBounds, tolerance: f64) -> Op
     (error <= tolerance).then_some([columns, rows])
 }
 
-/// The size of a cell of the inner grid: half the tolerance each for its bends, then both sides shortened as the twist asks.
+/// The size of a cell of the inner grid: half the tolerance for each bend, then both sides shortened as the twist asks.
 fn cell(bounds: &DerivativeBounds, tolerance: f64) -> DVec2 {
     let side = |bound: f64| (4.0 * tolerance / bound).sqrt().min(1.0);
     let cell = DVec2::new(side(bounds.uu()), side(bounds.vv()));

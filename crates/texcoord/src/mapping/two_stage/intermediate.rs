@@ -58,9 +58,9 @@ impl Intermediate {
     /// The box of `size` around the origin: six pictures, each filling its face as that of [`Cube`].
     ///
     /// # Errors
-    /// [`MappingError::Size`] where a side is not finite and above 0, or too small for its half.
+    /// [`MappingError::Size`] where a side is not finite and above 0.
     pub fn cuboid(size: DVec3) -> Result<Self, MappingError> {
-        let half = |what, side: f64| positive(what, 0.5 * side);
+        let half = |what, side: f64| positive(what, side).map(|side| 0.5 * side);
         let half_size = DVec3::new(
             half("width", size.x)?,
             half("depth", size.y)?,

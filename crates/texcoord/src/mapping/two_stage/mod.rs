@@ -62,13 +62,13 @@ pub struct TwoStage {
 impl TwoStage {
     /// The coordinate of a point: that of its point on the intermediate surface.
     ///
-    /// `None` where the ray misses or only touches the surface (a ray along a cylinder's axis, one away from a plane), where it
-    /// has no direction (zero normal, no [`Viewer`], a point at the centre or on the axis), and for input that is not
-    /// finite.
+    /// `None` where the ray misses or only touches the surface (a ray along a cylinder's axis, one away from a plane),
+    /// where it has no direction (zero normal, no [`Viewer`], a point at the centre or on the axis), and for input that
+    /// is not finite.
     ///
     /// # Accuracy
-    /// Points of the intermediate surface keep their coordinate within 2⁻⁴⁸ under every stage (reflected rays and normals
-    /// that leave it at 10° or more). Derivatives within 1e-5 of finite differences.
+    /// Points of the intermediate surface keep their coordinate within 2⁻⁴⁸ under every stage (reflected rays and
+    /// normals that leave it at 10° or more). Derivatives within 1e-5 of finite differences.
     #[must_use]
     pub fn at(&self, at: &SurfacePoint) -> Option<MappedPoint> {
         self.evaluate(&at.along_axes()).map(MappedPoint::from)

@@ -15,7 +15,9 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(2000))]
 
     #[test]
-    fn weights_sum_to_one_and_are_the_powers_of_the_normal(normal in direction(), k in 1.0..9.0f64, backs in backs(), size in -300..300i32) {
+    fn weights_sum_to_one_and_are_the_powers_of_the_normal(
+        normal in direction(), k in 1.0..9.0f64, backs in backs(), size in -300..300i32,
+    ) {
         let blend = Triplanar::new(k, backs).unwrap();
         let found = blend.at(DVec3::ONE, normal * 10f64.powi(size)).unwrap();
         prop_assert!((found.weights.element_sum() - 1.0).abs() <= SUM_BOUND);
@@ -109,5 +111,22 @@ fn sharpness_out_of_range_is_refused() {
             matches!(refused, Err(MappingError::Sharpness { .. })),
             "{value}"
         );
+    }
+}
+
+#[test]
+fn the_back_of_a_plane_runs_the_other_way_in_s_alone() {
+    let p = DVec3::new(1.0, 2.0, 3.0);
+    let st = |backs, n: DVec3| Facets { backs }.at(p, n).unwrap().st().to_array();
+    for (axis, front) in [
+        (DVec3::X, [2.0, 3.0]),
+        (DVec3::Y, [3.0, 1.0]),
+        (DVec3::Z, [1.0, 2.0]),
+    ] {
+        for backs in [BackFacets::Readable, BackFacets::Mirrored] {
+            assert_eq!(st(backs, axis), front);
+        }
+        assert_eq!(st(BackFacets::Readable, -axis), [-front[0], front[1]]);
+        assert_eq!(st(BackFacets::Mirrored, -axis), front);
     }
 }

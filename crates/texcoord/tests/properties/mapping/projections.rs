@@ -71,7 +71,9 @@ proptest! {
     }
 
     #[test]
-    fn cylindrical_is_the_formula_of_the_literature(s in prop::sample::select(super::strategies::TURNS.to_vec()), p in point(), h in 0.01..100.0f64) {
+    fn cylindrical_is_the_formula_of_the_literature(
+        s in prop::sample::select(super::strategies::TURNS.to_vec()), p in point(), h in 0.01..100.0f64,
+    ) {
         for (chart, t) in [
             (Cylindrical::plain(s), p.z),
             (Cylindrical::centred(s), (1.0 + p.z) / 2.0),
@@ -158,7 +160,10 @@ proptest! {
     }
 
     #[test]
-    fn a_planar_picture_fills_its_rectangle(origin in vector(5.0), s in vector(1.0), t in vector(1.0), size in [0.1..9.0f64, 0.1..9.0], st in [-1.0..2.0f64, -1.0..2.0], height in -3.0..3.0f64) {
+    fn a_planar_picture_fills_its_rectangle(
+        origin in vector(5.0), s in vector(1.0), t in vector(1.0), size in [0.1..9.0f64, 0.1..9.0],
+        st in [-1.0..2.0f64, -1.0..2.0], height in -3.0..3.0f64,
+    ) {
         prop_assume!(s.cross(t).length() > 0.05);
         let picture = ParallelProjection::planar(origin, s, t, DVec2::from_array(size)).unwrap();
         let normal = s.cross(t).normalize();
@@ -170,7 +175,9 @@ proptest! {
     }
 
     #[test]
-    fn a_placement_takes_points_to_its_frame(centre in vector(5.0), axis in vector(1.0), start in vector(1.0), p in vector(3.0)) {
+    fn a_placement_takes_points_to_its_frame(
+        centre in vector(5.0), axis in vector(1.0), start in vector(1.0), p in vector(3.0),
+    ) {
         prop_assume!(axis.cross(start).length() > 0.05);
         let placement = Placement::from_frame(centre, axis, start).unwrap();
         let local = placement.surface_point(&SurfacePoint::new(p, p)).position;
@@ -182,7 +189,9 @@ proptest! {
     }
 
     #[test]
-    fn normals_stay_at_right_angles_under_any_placement(map in affine(), p in vector(1.0), along in vector(1.0), across in vector(1.0)) {
+    fn normals_stay_at_right_angles_under_any_placement(
+        map in affine(), p in vector(1.0), along in vector(1.0), across in vector(1.0),
+    ) {
         let placement = Placement::new(map).unwrap();
         let at = SurfacePoint {
             dposition_dx: along,
@@ -264,6 +273,20 @@ fn quarter_turns_are_exact() {
     }
     assert_eq!(chart.inverse(DVec3::new(0.3, 1.0, 2.0)).z, -2.0);
     assert!(chart.inverse(DVec3::NAN).is_nan());
+}
+
+#[test]
+fn an_angle_beyond_a_quarter_turn_comes_back() {
+    // Where an angle near π/2 was rounded as a whole it came back 4.05 ulp off.
+    let p = DVec3::new(-0.842_867_570_312_532, 1.787_266_834_330_929_3, 0.0);
+    let chart = Spherical {
+        s: TurnConvention::Centred,
+        t: PolarConvention::FromTop,
+    };
+    let error = (chart.inverse(chart.at(p).unwrap().stp) - p)
+        .abs()
+        .max_element();
+    assert!(error <= 3.0 * ULP * p.length(), "{error:e}");
 }
 
 #[test]

@@ -38,7 +38,10 @@ proptest! {
     }
 
     #[test]
-    fn unwrapping_leaves_no_edge_over_half_a_turn(middle in -3.0..3.0f64, offsets in [-0.25..0.25f64, -0.25..0.25, -0.25..0.25], t in [0.0..1.0f64, 0.0..1.0, 0.0..1.0], signed in prop::bool::ANY) {
+    fn unwrapping_leaves_no_edge_over_half_a_turn(
+        middle in -3.0..3.0f64, offsets in [-0.25..0.25f64, -0.25..0.25, -0.25..0.25],
+        t in [0.0..1.0f64, 0.0..1.0, 0.0..1.0], signed in prop::bool::ANY,
+    ) {
         // Three corners within half a turn of each other, wherever the seam is.
         let truth = offsets.map(|offset| middle + offset);
         let wrapped = truth.map(|s| if signed { s - s.round() } else { s - s.floor() });
@@ -54,7 +57,10 @@ proptest! {
     }
 
     #[test]
-    fn triangles_are_interpolated_as_their_points_map(chart in spherical(), around in cylindrical(), centre in vector(1.0), edges in [vector(0.02), vector(0.02), vector(0.02)], weights in [0.0..1.0f64, 0.0..1.0, 0.0..1.0]) {
+    fn triangles_are_interpolated_as_their_points_map(
+        chart in spherical(), around in cylindrical(), centre in vector(1.0),
+        edges in [vector(0.02), vector(0.02), vector(0.02)], weights in [0.0..1.0f64, 0.0..1.0, 0.0..1.0],
+    ) {
         // A small triangle far from the axis: interpolation and projection differ by its size squared.
         let centre = DVec3::new(centre.x.signum() * 0.5 + centre.x, 0.02 * centre.y, centre.z);
         let corners = edges.map(|e| centre + e);

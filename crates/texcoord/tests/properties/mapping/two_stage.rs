@@ -82,7 +82,9 @@ proptest! {
     }
 
     #[test]
-    fn centroid_on_a_sphere_is_the_spherical_projection(at in surface_point(), radius in 0.5..5.0f64, chart in super::strategies::spherical()) {
+    fn centroid_on_a_sphere_is_the_spherical_projection(
+        at in surface_point(), radius in 0.5..5.0f64, chart in super::strategies::spherical(),
+    ) {
         let surface = Intermediate::sphere(radius, chart).unwrap();
         for stage in [ObjectStage::Centroid, ObjectStage::IntermediateNormal] {
             let found = TwoStage { surface, stage }.at(&at).unwrap();

@@ -40,6 +40,17 @@ proptest! {
     }
 
     #[test]
+    fn a_component_that_all_control_points_share_comes_back_exactly(
+        net in bezier_net(), z in -4.0..4.0f64, u in 0.0..=1.0f64, v in 0.0..=1.0f64,
+    ) {
+        let mut net = net;
+        net.control.iter_mut().for_each(|p| p.z = z);
+        net.weights.fill(1.0);
+        let at = net.patch().at(DVec2::new(u, v));
+        prop_assert_eq!((at.position.z, at.du.z, at.dv.z), (z, 0.0, 0.0));
+    }
+
+    #[test]
     fn tangents_are_the_limit_of_differences(net in bezier_net(), u in 0.01..0.99f64, v in 0.01..0.99f64) {
         let at = net.patch().at(DVec2::new(u, v));
         let slope = |f: &dyn Fn(f64) -> DVec3| {
@@ -77,7 +88,9 @@ proptest! {
     }
 
     #[test]
-    fn a_shared_edge_is_the_same_bits_whichever_way_it_is_read(net in bezier_net(), other in bezier_net(), n in 1u32..40) {
+    fn a_shared_edge_is_the_same_bits_whichever_way_it_is_read(
+        net in bezier_net(), other in bezier_net(), n in 1u32..40,
+    ) {
         // A patch whose last column is the first row of `net`, read backwards; its other columns are its own.
         let rows = net.columns;
         let own = other.control.iter().cycle().zip(other.weights.iter().cycle());

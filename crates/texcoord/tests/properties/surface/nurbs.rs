@@ -1,12 +1,10 @@
 //! B-splines and NURBS: the basis against its recursion, surfaces against their sums, circles.
 
-use core::f64::consts::FRAC_1_SQRT_2;
-
 use glam::{DVec2, DVec3};
 use proptest::prelude::*;
 use texcoord::surface::{KnotVector, NurbsSurface, SurfaceError};
 
-use super::strategies::{clamped_knots, knots, nurbs_net};
+use super::strategies::{clamped_knots, knots, nurbs_net, revolved, sphere};
 
 /// The recursion of Cox and de Boor as printed, from the definition of degree 0; 0/0 counts as 0.
 fn basis(knots: &[f64], i: usize, p: usize, t: f64) -> f64 {
@@ -84,7 +82,9 @@ proptest! {
     }
 
     #[test]
-    fn surfaces_are_their_sums((knots, control, weights) in nurbs_net(knots(), knots()), u in 0.0..=1.0f64, v in 0.0..=1.0f64) {
+    fn surfaces_are_their_sums(
+        (knots, control, weights) in nurbs_net(knots(), knots()), u in 0.0..=1.0f64, v in 0.0..=1.0f64,
+    ) {
         let surface = NurbsSurface::new(knots.clone(), &control, &weights).unwrap();
         let found = surface.at(DVec2::new(u, v));
         let truth = by_recursion(&knots, &control, &weights, [in_domain(&knots[0], u), in_domain(&knots[1], v)]);
@@ -92,7 +92,9 @@ proptest! {
     }
 
     #[test]
-    fn tangents_are_the_limit_of_differences((knots, control, weights) in nurbs_net(knots(), knots()), u in 0.01..0.99f64, v in 0.01..0.99f64) {
+    fn tangents_are_the_limit_of_differences(
+        (knots, control, weights) in nurbs_net(knots(), knots()), u in 0.01..0.99f64, v in 0.01..0.99f64,
+    ) {
         let h = 1e-5;
         for (axis, t) in [u, v].into_iter().enumerate() {
             let [low, high] = knots[axis].domain();
@@ -113,7 +115,9 @@ proptest! {
     }
 
     #[test]
-    fn bezier_patches_are_the_surface((knots, control, weights) in nurbs_net(knots(), knots()), s in 0.0..=1.0f64, t in 0.0..=1.0f64) {
+    fn bezier_patches_are_the_surface(
+        (knots, control, weights) in nurbs_net(knots(), knots()), s in 0.0..=1.0f64, t in 0.0..=1.0f64,
+    ) {
         let surface = NurbsSurface::new(knots.clone(), &control, &weights).unwrap();
         for (patch, [low, high]) in surface.bezier_patches() {
             let local = DVec2::new(s, t);
@@ -162,35 +166,9 @@ proptest! {
     }
 }
 
-/// The circle of nine points, quadratic, over a height.
 fn tube(heights: [f64; 2], radii: [f64; 2]) -> NurbsSurface {
-    let ring = [
-        [1, 0],
-        [1, 1],
-        [0, 1],
-        [-1, 1],
-        [-1, 0],
-        [-1, -1],
-        [0, -1],
-        [1, -1],
-        [1, 0],
-    ];
-    let mut control = Vec::new();
-    let mut weights = Vec::new();
-    for (z, r) in heights.into_iter().zip(radii) {
-        for (k, [x, y]) in ring.into_iter().enumerate() {
-            control.push(DVec3::new(f64::from(x) * r, f64::from(y) * r, z));
-            weights.push(if k % 2 == 0 { 1.0 } else { FRAC_1_SQRT_2 });
-        }
-    }
-    let around = vec![
-        0.0, 0.0, 0.0, 0.25, 0.25, 0.5, 0.5, 0.75, 0.75, 1.0, 1.0, 1.0,
-    ];
-    let knots = [
-        KnotVector::new(2, around).unwrap(),
-        KnotVector::bezier(1).unwrap(),
-    ];
-    NurbsSurface::new(knots, &control, &weights).unwrap()
+    let profile = [0, 1].map(|k| [radii[k], heights[k], 1.0]);
+    revolved(KnotVector::bezier(1).unwrap(), &profile)
 }
 
 #[test]
@@ -211,6 +189,26 @@ fn a_circle_is_exact() {
                 .truncate()
                 .length();
             assert!((radius - 1.0).abs() <= 1e-15, "{radius:e} at {k}");
+        }
+    }
+}
+
+#[test]
+fn a_sphere_is_exact() {
+    let sphere = sphere();
+    for i in 0..=100 {
+        for j in 0..=100 {
+            let at = sphere.at(DVec2::new(f64::from(i) / 100.0, f64::from(j) / 100.0));
+            assert!(
+                (at.position.length() - 1.0).abs() <= 1e-15,
+                "{i} {j}: {}",
+                at.position
+            );
+            assert!(
+                (at.normal - at.position).length() <= 1e-8,
+                "{i} {j}: {}",
+                at.normal
+            );
         }
     }
 }

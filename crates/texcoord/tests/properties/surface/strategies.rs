@@ -1,9 +1,11 @@
 //! Control nets, and what a textbook says of them.
 
+use core::f64::consts::FRAC_1_SQRT_2;
+
 use glam::{DVec3, Vec3};
 use proptest::collection::vec;
 use proptest::prelude::*;
-use texcoord::surface::{BezierPatch, KnotVector};
+use texcoord::surface::{BezierPatch, KnotVector, NurbsSurface};
 
 /// A net of control points with weights, row by row.
 #[derive(Clone, Debug)]
@@ -111,4 +113,45 @@ pub(crate) fn nurbs_net(
         let count = u.control_points() * v.control_points();
         (Just([u, v]), points(count), weights(count))
     })
+}
+
+/// A surface of revolution around z: the circle of nine points over a profile of (radius, height, weight).
+pub(crate) fn revolved(knots: KnotVector, profile: &[[f64; 3]]) -> NurbsSurface {
+    let ring = [
+        [1, 0],
+        [1, 1],
+        [0, 1],
+        [-1, 1],
+        [-1, 0],
+        [-1, -1],
+        [0, -1],
+        [1, -1],
+        [1, 0],
+    ];
+    let (mut control, mut weights) = (Vec::new(), Vec::new());
+    for &[r, z, w] in profile {
+        for (k, [x, y]) in ring.into_iter().enumerate() {
+            control.push(DVec3::new(f64::from(x) * r, f64::from(y) * r, z));
+            weights.push(if k % 2 == 0 { w } else { w * FRAC_1_SQRT_2 });
+        }
+    }
+    let around = vec![
+        0.0, 0.0, 0.0, 0.25, 0.25, 0.5, 0.5, 0.75, 0.75, 1.0, 1.0, 1.0,
+    ];
+    let around = KnotVector::new(2, around).unwrap();
+    NurbsSurface::new([around, knots], &control, &weights).unwrap()
+}
+
+/// The unit sphere: two quarter circles from pole to pole, turned around z.
+pub(crate) fn sphere() -> NurbsSurface {
+    let knots = KnotVector::new(2, vec![0.0, 0.0, 0.0, 0.5, 0.5, 1.0, 1.0, 1.0]).unwrap();
+    let w = FRAC_1_SQRT_2;
+    let profile = [
+        [0.0, -1.0, 1.0],
+        [1.0, -1.0, w],
+        [1.0, 0.0, 1.0],
+        [1.0, 1.0, w],
+        [0.0, 1.0, 1.0],
+    ];
+    revolved(knots, &profile)
 }

@@ -9,7 +9,7 @@ use texcoord::surface::{
 };
 use texcoord::teapot;
 
-use super::strategies::{BezierNet, bezier_net};
+use super::strategies::{BezierNet, bezier_net, sphere};
 
 fn bits(p: Vec3) -> [u32; 3] {
     p.to_array().map(f32::to_bits)
@@ -275,6 +275,29 @@ fn a_nurbs_surface_is_tessellated_as_one() {
         for mesh in &meshes {
             let found = largest_error(&|uv| surface.at(uv).position, mesh);
             assert!(found <= tolerance + 1e-5, "{found} for {tolerance}");
+        }
+    }
+}
+
+#[test]
+fn a_sphere_of_nurbs_is_closed_and_within_its_tolerance() {
+    let sphere = sphere();
+    for tolerance in [0.3, 0.1, 0.01, 0.001] {
+        let meshes = sphere.tessellate(tolerance, |_| 1.0).unwrap();
+        assert_eq!(
+            boundary(&meshes),
+            Vec::<[[u32; 3]; 2]>::new(),
+            "{tolerance}"
+        );
+        for mesh in &meshes {
+            let found = largest_error(&|uv| sphere.at(uv).position, mesh);
+            assert!(found <= tolerance + 1e-6, "{found} for {tolerance}");
+            for (normal, position) in mesh.normals.iter().zip(&mesh.positions) {
+                assert!(
+                    (*normal - *position).length() < 1e-6,
+                    "{normal} at {position}"
+                );
+            }
         }
     }
 }
