@@ -34,6 +34,10 @@
 //! # Patches
 //! [`BicubicPatch`] is a parametric surface whose (u,v) come for free; [`teapot`] holds the 32 best known.
 //!
+//! # Charts
+//! `charts` (a feature of that name) makes coordinates for a mesh that has none: it cuts charts, flattens them without
+//! folds and nearly isometrically, packs them by their shapes, and measures distortion.
+//!
 //! # Conventions
 //! (s,t) has its origin at the top left, t down, as glTF. (u,v) are parameters of a surface; its front is the
 //! side that ∂u × ∂v points to. Screen derivatives are per pixel; whether y counts rows down or up is the
@@ -46,9 +50,10 @@
 //! | attributes in f32 | 2⁻²⁴ of the result + 2⁻⁴⁹ of the range | any ratio of w |
 //! | derivatives of (s,t) | 1e-5 of the gradient's length | ratios of w to 2²⁰, slivers included |
 //! | patch points | 1 ulp of the largest control coordinate | (u,v) in 0..=1 |
+//! | charts | L² stretch ≤ 1.02 (an option), no fold, no overlap | any mesh; triangles no thinner than 2⁻²⁴ of the image |
 //!
 //! # Limits
-//! No projections, two-stage mappings or charts yet. Sums are in f64 and rounded once: this is the reference
+//! No projections or two-stage mappings yet. Sums are in f64 and rounded once: this is the reference
 //! that faster paths are held against.
 //!
 //! # Sources
@@ -56,6 +61,8 @@
 //! KHR_texture_transform; Newell 1975; Crow 1987.
 #![forbid(unsafe_code)]
 
+#[cfg(feature = "charts")]
+pub mod charts;
 pub mod packet;
 mod patch;
 mod perspective;

@@ -1,0 +1,351 @@
+//! All of it: a mesh in, texture coordinates out.
+
+use glam::{DVec2, Vec2, Vec3};
+
+use super::flatten::{FlatChart, FlattenOptions, flatten, flatten_whole};
+use super::for_each::{ForEach, results};
+use super::merge::pairs_to_merge;
+use super::pack::{Effort, PackOptions, Packing, Placement, pack};
+use super::segment::{Segmentation, divide};
+use super::snap::{STEPS, snap};
+use super::surface::{FaceFault, NONE, Surface, SurfaceReport, Weld, id};
+use super::{ChartError, Density};
+
+/// Rounds in which small charts join others.
+const MERGE_ROUNDS: usize = 3;
+
+/// Rounds in which the charts that waste most room are divided.
+const DIVIDE_ROUNDS: usize = 12;
+
+/// Utilisation that thorough packing may add to quick packing.
+const THOROUGH_GAIN: f64 = 0.07;
+
+/// Share of the whole area below which a chart is not divided for the sake of packing.
+const MIN_DIVIDED_SHARE: f64 = 1.0 / 100.0;
+
+/// Waste, as part of the most wasteful chart's, from which others are divided in the same round.
+const DIVIDED_WASTE: f64 = 0.7;
+
+/// How a mesh is unwrapped.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct UnwrapOptions {
+    /// Which vertices are one point of the surface.
+    pub weld: Weld,
+    /// What a chart must keep to.
+    pub flatten: FlattenOptions,
+    /// What the packing must keep to.
+    pub pack: PackOptions,
+    /// Share of the image that charts should cover, 0..=1. Where they do not, those that waste most room are divided:
+    /// more seams for more texels. 0 keeps the charts as large as their stretch allows.
+    pub min_utilisation: f64,
+}
+
+impl Default for UnwrapOptions {
+    /// Stretch to 1.02, utilisation from 0.66.
+    fn default() -> Self {
+        Self {
+            weld: Weld::default(),
+            flatten: FlattenOptions::default(),
+            pack: PackOptions::default(),
+            min_utilisation: 0.66,
+        }
+    }
+}
+
+/// How far an unwrapping has come.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Progress {
+    /// The surface is being divided into charts.
+    Segmenting,
+    /// So many faces of all lie flat; reported from the threads that work.
+    Flattened {
+        /// Faces in charts that are done.
+        faces: usize,
+        /// Faces that will be in charts.
+        of: usize,
+    },
+    /// So many charts are being packed.
+    Packing {
+        /// Charts.
+        charts: usize,
+    },
+}
+
+/// Texture coordinates for every triangle of a mesh.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Atlas {
+    /// Coordinates of the new vertices, 0..=1, multiples of 2⁻²⁴; s to the right, t down.
+    pub st: Vec<Vec2>,
+    /// The caller's vertex that each new vertex is a copy of.
+    pub sources: Vec<u32>,
+    /// New vertices of each of the caller's triangles, in the order of its corners.
+    pub triangles: Vec<[u32; 3]>,
+    /// Chart of each triangle; nothing for faulty faces.
+    pub charts: Vec<Option<u32>>,
+    /// Image of each chart.
+    pub images: Vec<u32>,
+    /// How the charts lie: sizes, density, utilisation.
+    pub packing: Packing,
+    /// What was wrong with the mesh.
+    pub report: SurfaceReport,
+}
+
+impl Atlas {
+    /// Coordinates of the corners of each of the caller's triangles.
+    #[must_use]
+    pub fn corner_st(&self) -> Vec<[Vec2; 3]> {
+        let corners = self.triangles.iter();
+        corners.map(|t| t.map(|v| self.st[v as usize])).collect()
+    }
+}
+
+/// Texture coordinates for a mesh: charts cut, flattened, packed.
+///
+/// Charts are divided until none folds, overlaps or stretches beyond the option; small ones join a neighbour where that
+/// keeps them so; wasteful ones are divided again when the image is not used enough. Every triangle is oriented as the
+/// surface: its signed area in (s, t), t down, is negative, so tangents of these coordinates have handedness +1 (glTF's
+/// bitangent is cross(normal, tangent)·w).
+///
+/// Faulty faces ([`FaceFault`]) belong to no chart. A duplicate has the coordinates of the face it repeats; all others
+/// are at (0, 0).
+///
+/// The result depends on neither `for_each` nor the machine.
+///
+/// # Errors
+/// Those of [`Surface::of`] and [`pack`].
+/// # Examples
+/// ```
+/// use glam::Vec3;
+/// use texcoord::charts::{UnwrapOptions, in_order, unwrap};
+/// let quad = [Vec3::ZERO, Vec3::X, Vec3::X + Vec3::Y, Vec3::Y];
+/// let atlas = unwrap(&quad, &[[0, 1, 2], [0, 2, 3]], &UnwrapOptions::default(), &in_order, &|_| {})?;
+/// assert_eq!((atlas.images.len(), atlas.st.len()), (1, 4));
+/// # Ok::<(), texcoord::charts::ChartError>(())
+/// ```
+pub fn unwrap(
+    positions: &[Vec3],
+    triangles: &[[u32; 3]],
+    options: &UnwrapOptions,
+    for_each: ForEach<'_>,
+    progress: &(dyn Fn(Progress) + Sync),
+) -> Result<Atlas, ChartError> {
+    let surface = Surface::of(positions, triangles, options.weld)?;
+    progress(Progress::Segmenting);
+    let segmentation = Segmentation::of(&surface);
+    let work = Work {
+        surface: &surface,
+        options,
+        for_each,
+        progress,
+    };
+    let charts = work.flatten_all(&segmentation.charts);
+    let charts = work.merge_small(charts);
+    let (charts, packing) = work.pack_well(charts)?;
+    Ok(assemble(&surface, &charts, packing))
+}
+
+struct Work<'a> {
+    surface: &'a Surface,
+    options: &'a UnwrapOptions,
+    for_each: ForEach<'a>,
+    progress: &'a (dyn Fn(Progress) + Sync),
+}
+
+impl Work<'_> {
+    fn flatten_all(&self, parts: &[Vec<u32>]) -> Vec<FlatChart> {
+        let of = parts.iter().map(Vec::len).sum();
+        let done = std::sync::atomic::AtomicUsize::new(0);
+        let charts = results(self.for_each, parts.len(), &|k| {
+            let charts = flatten(self.surface, &parts[k], &self.options.flatten);
+            let count = parts[k].len();
+            let before = done.fetch_add(count, std::sync::atomic::Ordering::Relaxed);
+            (self.progress)(Progress::Flattened {
+                faces: before + count,
+                of,
+            });
+            charts
+        });
+        charts.into_iter().flatten().collect()
+    }
+
+    /// Joins small charts with neighbours, where the two make one good chart.
+    fn merge_small(&self, mut charts: Vec<FlatChart>) -> Vec<FlatChart> {
+        for _ in 0..MERGE_ROUNDS {
+            let pairs = pairs_to_merge(self.surface, &charts);
+            let merged = results(self.for_each, pairs.len(), &|k| {
+                let (a, b) = pairs[k];
+                let mut faces = [&charts[a].faces[..], &charts[b].faces[..]].concat();
+                faces.sort_unstable();
+                flatten_whole(self.surface, &faces, &self.options.flatten).ok()
+            });
+            if merged.iter().all(Option::is_none) {
+                break;
+            }
+            let mut gone = vec![false; charts.len()];
+            for ((a, b), one) in pairs.into_iter().zip(merged) {
+                if let Some(one) = one {
+                    charts[b] = one;
+                    gone[a] = true;
+                }
+            }
+            let mut gone = gone.into_iter();
+            charts.retain(|_| !gone.next().unwrap_or(false));
+        }
+        charts
+    }
+
+    /// Packs, and divides wasteful charts until the image is used enough.
+    fn pack_well(
+        &self,
+        mut charts: Vec<FlatChart>,
+    ) -> Result<(Vec<FlatChart>, Packing), ChartError> {
+        let mut packing = self.pack_to_goal(&charts)?;
+        let mut best = (charts.clone(), packing.clone());
+        for _ in 0..DIVIDE_ROUNDS {
+            let wasteful = wasteful_charts(&charts);
+            if self.is_enough(&packing) || wasteful.is_empty() {
+                break;
+            }
+            let parts = results(self.for_each, wasteful.len(), &|k| {
+                let halves = divide(self.surface, &charts[wasteful[k]].faces, 2);
+                let flat = |half: &Vec<u32>| flatten(self.surface, half, &self.options.flatten);
+                halves.iter().flat_map(flat).collect::<Vec<_>>()
+            });
+            for (&chart, parts) in wasteful.iter().zip(parts).rev() {
+                charts.splice(chart..=chart, parts);
+            }
+            packing = match self.pack_to_goal(&charts) {
+                Ok(packing) => packing,
+                // More charts need more padding than there is room for.
+                Err(_) => break,
+            };
+            if packing.utilisation > best.1.utilisation {
+                best = (charts.clone(), packing.clone());
+            }
+        }
+        if !self.is_enough(&best.1) {
+            best.1 = pack(&best.0, &self.options.pack, self.for_each)?;
+        }
+        Ok(best)
+    }
+
+    fn is_enough(&self, packing: &Packing) -> bool {
+        packing.utilisation >= self.options.min_utilisation
+            || self.options.pack.density != Density::Fit
+    }
+
+    /// Packs quickly, and as the options ask where that can reach the utilisation wanted.
+    fn pack_to_goal(&self, charts: &[FlatChart]) -> Result<Packing, ChartError> {
+        (self.progress)(Progress::Packing {
+            charts: charts.len(),
+        });
+        let quick = PackOptions {
+            effort: Effort::Quick,
+            ..self.options.pack
+        };
+        let packing = pack(charts, &quick, self.for_each)?;
+        if packing.utilisation + THOROUGH_GAIN < self.options.min_utilisation {
+            return Ok(packing);
+        }
+        pack(charts, &self.options.pack, self.for_each)
+    }
+}
+
+/// Charts whose narrowest box holds about the most that is not theirs, ascending.
+fn wasteful_charts(charts: &[FlatChart]) -> Vec<usize> {
+    let total: f64 = charts.iter().map(FlatChart::area).sum();
+    let large = |c: &FlatChart| c.faces.len() > 1 && c.area() > total * MIN_DIVIDED_SHARE;
+    let waste = |c: &FlatChart| {
+        if large(c) {
+            c.box_area() - c.area()
+        } else {
+            0.0
+        }
+    };
+    let wastes: Vec<f64> = charts.iter().map(waste).collect();
+    let most = wastes.iter().fold(0.0, |most: f64, w| most.max(*w));
+    (0..charts.len())
+        .filter(|&c| wastes[c] > 0.0 && wastes[c] >= DIVIDED_WASTE * most)
+        .collect()
+}
+
+/// Gives every corner its coordinate; corners of one fan with one source share a vertex.
+fn assemble(surface: &Surface, charts: &[FlatChart], packing: Packing) -> Atlas {
+    let faces = surface.face_count();
+    let mut atlas = Atlas {
+        st: Vec::new(),
+        sources: Vec::new(),
+        triangles: vec![[NONE; 3]; faces],
+        charts: vec![None; faces],
+        images: packing.placements.iter().map(|p| p.image).collect(),
+        report: *surface.report(),
+        packing,
+    };
+    for (number, chart) in (0u32..).zip(charts) {
+        let st = placed(chart, &atlas.packing.placements[number as usize]);
+        // The new vertices made of each vertex of the chart, one for each source.
+        let mut made: Vec<Vec<u32>> = vec![Vec::new(); st.len()];
+        for (&face, corners) in chart.faces.iter().zip(&chart.triangles) {
+            atlas.charts[face as usize] = Some(number);
+            for k in 0..3 {
+                let source = surface.triangle(face)[k];
+                let made = &mut made[corners[k] as usize];
+                let known = made.iter().find(|&&v| atlas.sources[v as usize] == source);
+                let vertex = known.copied().unwrap_or_else(|| {
+                    let new = atlas.push(source, st[corners[k] as usize]);
+                    made.push(new);
+                    new
+                });
+                atlas.triangles[face as usize][k] = vertex;
+            }
+        }
+    }
+    for face in 0..id(faces) {
+        atlas.place_faulty(surface, face);
+    }
+    atlas
+}
+
+impl Atlas {
+    fn push(&mut self, source: u32, st: Vec2) -> u32 {
+        self.st.push(st);
+        self.sources.push(source);
+        id(self.st.len() - 1)
+    }
+
+    fn place_faulty(&mut self, surface: &Surface, face: u32) {
+        let corners = surface.triangle(face);
+        let st = match surface.fault(face) {
+            None => return,
+            Some(FaceFault::DuplicateOf(first)) => {
+                let place = self.triangles[first as usize].map(|v| self.st[v as usize]);
+                surface.matching_corners(face, first).map(|k| place[k])
+            }
+            Some(_) => [Vec2::ZERO; 3],
+        };
+        for k in 0..3 {
+            self.triangles[face as usize][k] = self.push(corners[k], st[k]);
+        }
+    }
+}
+
+/// Coordinates of a chart's vertices, on the lattice of 2⁻²⁴.
+#[allow(
+    clippy::cast_possible_truncation,
+    reason = "multiples of 2⁻²⁴ in 0..=1 are exact in f32"
+)]
+fn placed(chart: &FlatChart, placement: &Placement) -> Vec<Vec2> {
+    // Rounded with t up, where triangles are counter-clockwise.
+    let upward = |&p: &DVec2| {
+        let st = placement.st(p);
+        DVec2::new(st.x, 1.0 - st.y)
+    };
+    let st: Vec<DVec2> = chart.xy.iter().map(upward).collect();
+    let lattice = snap(&chart.triangles, &st);
+    let downward = |[x, y]: [i64; 2]| {
+        let (s, t) = (x as f64 / STEPS, 1.0 - y as f64 / STEPS);
+        Vec2::new(s as f32, t as f32)
+    };
+    lattice.into_iter().map(downward).collect()
+}
