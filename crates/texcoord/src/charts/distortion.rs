@@ -53,8 +53,8 @@ impl Distortion {
     /// overlap nor hang together.
     ///
     /// Overlaps are found in exact arithmetic on coordinates rounded to 2⁻²⁸ of the power of two above the largest; so
-    /// they are exact for multiples of 2⁻²⁴ in 0..=1, as [`unwrap`](super::unwrap) makes them. Coordinates that are not
-    /// finite count as 0. Time near n·log n where few triangles lie over each other.
+    /// they are exact for multiples of 2⁻²⁴ in 0..=1, as [`unwrap`](super::unwrap) makes them. A face with a
+    /// coordinate that is not finite counts as collapsed. Time near n·log n where few triangles lie over each other.
     ///
     /// # Panics
     /// If `st` or `images` has not one entry for each face.
@@ -153,7 +153,11 @@ struct Measured<'a> {
 
 impl<'a> Measured<'a> {
     fn of(surface: &'a Surface, st: &'a [[Vec2; 3]], images: &'a [u32]) -> Self {
-        let corners: Vec<DVec2> = st.iter().flatten().map(|p| p.as_dvec2()).collect();
+        let finite = |face: &[Vec2; 3]| face.iter().all(|p| p.is_finite());
+        let corners = st
+            .iter()
+            .map(|face| if finite(face) { *face } else { [Vec2::ZERO; 3] });
+        let corners: Vec<DVec2> = corners.flatten().map(|p| p.as_dvec2()).collect();
         let lattice = to_lattice(&corners);
         let sound = (0..id(st.len())).filter(|&f| surface.fault(f).is_none());
         let faces: Vec<MeasuredFace> = sound

@@ -53,13 +53,13 @@ impl FlatChart {
         plane_area(&self.triangles, &self.xy)
     }
 
-    /// Area of the chart's narrowest box.
-    pub(crate) fn box_area(&self) -> f64 {
+    /// Sides of the chart's narrowest box.
+    pub(crate) fn box_sides(&self) -> DVec2 {
         let border: Vec<DVec2> = self.border.iter().map(|&v| self.xy[v as usize]).collect();
         let turn = narrowest_turn(&border);
         let turned: Vec<DVec2> = border.iter().map(|&p| turn.rotate(p)).collect();
         let (low, high) = extremes(&turned);
-        (high - low).element_product()
+        high - low
     }
 }
 

@@ -26,7 +26,7 @@ impl Mask {
         let (width, height) = (cell(size.x) + 1, cell(size.y) + 1);
         let words = width.div_ceil(64);
         let mut bits = vec![0u64; words * height];
-        let mut crossings = vec![Vec::new(); height];
+        let mut crossings = Vec::new();
         for (k, &a) in border.iter().enumerate() {
             let (a, b) = (a + shift, border[(k + 1) % border.len()] + shift);
             let (a, b) = if a.y <= b.y { (a, b) } else { (b, a) };
@@ -35,16 +35,15 @@ impl Mask {
                 let last = cell(to + margin).min(width - 1);
                 set_run(&mut bits[row * words..], cell(from - margin), last);
             }
-            cross_middles(a, b, &mut crossings);
+            cross_middles(a, b, height, &mut crossings);
         }
-        for (row, xs) in crossings.iter_mut().enumerate() {
-            xs.sort_by(f64::total_cmp);
-            for pair in xs.chunks_exact(2) {
-                let (first, last) = (cell(pair[0] + 0.5), cell(pair[1] - 0.5));
-                // Middles from the first crossing to the second; none when they lie in one cell.
-                if first <= last && pair[1] > 0.5 {
-                    set_run(&mut bits[row * words..], first, last.min(width - 1));
-                }
+        crossings.sort_unstable_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)));
+        for pair in crossings.chunks_exact(2) {
+            let ((row, from), (_, to)) = (pair[0], pair[1]);
+            let (first, last) = (cell(from + 0.5), cell(to - 0.5));
+            // Middles from the first crossing to the second; none when they lie in one cell.
+            if first <= last && to > 0.5 {
+                set_run(&mut bits[row * words..], first, last.min(width - 1));
             }
         }
         let rows: Vec<Vec<(usize, usize)>> = bits.chunks_exact(words).map(runs).collect();
@@ -117,20 +116,16 @@ fn span(a: DVec2, b: DVec2, low: f64, high: f64) -> (f64, f64) {
     (from.min(to), from.max(to))
 }
 
-/// Notes where an edge crosses the middles of rows; a.y ≤ b.y, the lower end belongs to it.
-fn cross_middles(a: DVec2, b: DVec2, crossings: &mut [Vec<f64>]) {
-    let first = cell((a.y + 0.5).max(0.0));
-    for (row, xs) in crossings
-        .iter_mut()
-        .enumerate()
-        .skip(first.saturating_sub(1))
-    {
+/// Notes (row, x) where an edge crosses the middles of rows; a.y ≤ b.y, the lower end belongs to it. So a closed polygon
+/// crosses each middle an even number of times.
+fn cross_middles(a: DVec2, b: DVec2, height: usize, crossings: &mut Vec<(usize, f64)>) {
+    for row in cell((a.y - 0.5).ceil())..height {
         let middle = row as f64 + 0.5;
         if middle >= b.y {
             break;
         }
         if middle >= a.y {
-            xs.push(a.x + (middle - a.y) / (b.y - a.y) * (b.x - a.x));
+            crossings.push((row, a.x + (middle - a.y) / (b.y - a.y) * (b.x - a.x)));
         }
     }
 }

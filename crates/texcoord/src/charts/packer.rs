@@ -15,6 +15,9 @@ use super::surface::id;
 /// Side of an average chart, in cells; finer cells pack a little closer and take longer.
 const CELLS_PER_CHART: f64 = 44.0;
 
+/// The same for many charts.
+const CELLS_PER_MANY: f64 = 22.0;
+
 /// Ratio of the densities between which the search ends.
 const DENSITY_PRECISION: f64 = 1.004;
 
@@ -22,7 +25,7 @@ const DENSITY_PRECISION: f64 = 1.004;
 const COARSE_PRECISION: f64 = 1.02;
 
 /// Charts above which one way of packing is tried, and a search starts where the last one of that size ended.
-const MANY_CHARTS: usize = 1000;
+pub(crate) const MANY_CHARTS: usize = 1000;
 
 /// Added to half the gap, in texels: more than the rounding of coordinates, so that the gap is never a texel short.
 pub(crate) const MARGIN_SLACK: f64 = 1.0 / 64.0;
@@ -89,7 +92,13 @@ impl<'a> Packer<'a> {
         let mut order: Vec<usize> = (0..outlines.len()).collect();
         let by_area = |&a: &usize, &b: &usize| outlines[b].area.total_cmp(&outlines[a].area);
         order.sort_by(|a, b| by_area(a, b).then(a.cmp(b)));
-        let wanted = CELLS_PER_CHART * (outlines.len() as f64 / USUAL_UTILISATION).sqrt();
+        let many = outlines.len() > MANY_CHARTS;
+        let wanted = if many {
+            CELLS_PER_MANY
+        } else {
+            CELLS_PER_CHART
+        };
+        let wanted = wanted * (outlines.len() as f64 / USUAL_UTILISATION).sqrt();
         let mut cell = 1;
         while f64::from(size / (2 * cell)) >= wanted.max(128.0) {
             cell *= 2;

@@ -5,7 +5,8 @@ use glam::{DVec2, Vec2, Vec3};
 use super::flatten::{FlatChart, FlattenOptions, flatten, flatten_whole};
 use super::for_each::{ForEach, results};
 use super::merge::pairs_to_merge;
-use super::pack::{Effort, PackOptions, Packing, Placement, pack};
+use super::pack::{AtlasSize, Effort, MAX_ATLAS_SIZE, PackOptions, Packing, Placement, pack};
+use super::packer::MANY_CHARTS;
 use super::segment::{Segmentation, divide};
 use super::snap::{STEPS, snap};
 use super::surface::{FaceFault, NONE, Surface, SurfaceReport, Weld, id};
@@ -16,6 +17,18 @@ const MERGE_ROUNDS: usize = 3;
 
 /// Rounds in which the charts that waste most room are divided.
 const DIVIDE_ROUNDS: usize = 12;
+
+/// Utilisation missing from which charts are divided into more than two parts.
+const FAR_FROM_GOAL: f64 = 0.045;
+
+/// Share of the whole area that a part should then have.
+const PART_SHARE: f64 = 1.0 / 24.0;
+
+/// Utilisation that divided charts must add to be preferred.
+const MIN_GAIN: f64 = 0.004;
+
+/// Rounds without such a gain after which dividing ends.
+const MAX_IDLE_ROUNDS: usize = 5;
 
 /// Utilisation that thorough packing may add to quick packing.
 const THOROUGH_GAIN: f64 = 0.07;
@@ -200,34 +213,89 @@ impl Work<'_> {
         &self,
         mut charts: Vec<FlatChart>,
     ) -> Result<(Vec<FlatChart>, Packing), ChartError> {
+        self.divide_too_large(&mut charts);
         let mut packing = self.pack_to_goal(&charts)?;
         let mut best = (charts.clone(), packing.clone());
+        let mut idle = 0;
         for _ in 0..DIVIDE_ROUNDS {
             let wasteful = wasteful_charts(&charts);
             if self.is_enough(&packing) || wasteful.is_empty() {
                 break;
             }
-            let parts = results(self.for_each, wasteful.len(), &|k| {
-                let halves = divide(self.surface, &charts[wasteful[k]].faces, 2);
-                let flat = |half: &Vec<u32>| flatten(self.surface, half, &self.options.flatten);
-                halves.iter().flat_map(flat).collect::<Vec<_>>()
-            });
-            for (&chart, parts) in wasteful.iter().zip(parts).rev() {
-                charts.splice(chart..=chart, parts);
-            }
+            let missing = self.options.min_utilisation - packing.utilisation;
+            let share = if missing > FAR_FROM_GOAL {
+                PART_SHARE
+            } else {
+                1.0
+            };
+            self.divide(&mut charts, &wasteful, share);
             packing = match self.pack_to_goal(&charts) {
                 Ok(packing) => packing,
                 // More charts need more padding than there is room for.
                 Err(_) => break,
             };
-            if packing.utilisation > best.1.utilisation {
+            idle += 1;
+            if packing.utilisation > best.1.utilisation + MIN_GAIN {
                 best = (charts.clone(), packing.clone());
+                idle = 0;
+            }
+            if idle == MAX_IDLE_ROUNDS {
+                break;
             }
         }
-        if !self.is_enough(&best.1) {
+        let hopeless = best.1.utilisation + THOROUGH_GAIN < self.options.min_utilisation;
+        if hopeless && !self.is_enough(&best.1) && self.can_improve(&best.0) {
             best.1 = pack(&best.0, &self.options.pack, self.for_each)?;
         }
         Ok(best)
+    }
+
+    /// Divides charts until none is wider than an image at the density asked for, as far as they have faces.
+    fn divide_too_large(&self, charts: &mut Vec<FlatChart>) {
+        let pack = &self.options.pack;
+        let size = match pack.size {
+            AtlasSize::Texels(size) => size,
+            AtlasSize::Automatic => MAX_ATLAS_SIZE,
+        };
+        let Density::TexelsPerUnit(density) = pack.density else {
+            return;
+        };
+        // A little room for cells that do not begin where a chart does.
+        let room = 0.98 * f64::from(size) - f64::from(pack.gap()) - 4.0;
+        loop {
+            let too_large: Vec<usize> = (0..charts.len())
+                .filter(|&c| charts[c].faces.len() > 1)
+                .filter(|&c| charts[c].box_sides().max_element() * density > room)
+                .collect();
+            if too_large.is_empty() {
+                return;
+            }
+            self.divide(charts, &too_large, 1.0);
+        }
+    }
+
+    /// Replaces charts, given in ascending order, by parts: two each, up to four where a chart has several times
+    /// `share` of the whole area.
+    fn divide(&self, charts: &mut Vec<FlatChart>, which: &[usize], share: f64) {
+        let total: f64 = charts.iter().map(FlatChart::area).sum();
+        let parts = results(self.for_each, which.len(), &|k| {
+            let chart = &charts[which[k]];
+            let shares = chart.area() / (total * share);
+            let count = 2 + usize::from(shares > 2.5) + usize::from(shares > 3.5);
+            let parts = divide(self.surface, &chart.faces, count);
+            let flat = |part: &Vec<u32>| flatten(self.surface, part, &self.options.flatten);
+            parts.iter().flat_map(flat).collect::<Vec<_>>()
+        });
+        for (&chart, parts) in which.iter().zip(parts).rev() {
+            charts.splice(chart..=chart, parts);
+        }
+    }
+
+    /// Whether more effort than a quick packing's is asked for, and makes a difference.
+    fn can_improve(&self, charts: &[FlatChart]) -> bool {
+        self.options.pack.effort == Effort::Thorough
+            && self.options.pack.density == Density::Fit
+            && charts.len() <= MANY_CHARTS
     }
 
     fn is_enough(&self, packing: &Packing) -> bool {
@@ -245,7 +313,8 @@ impl Work<'_> {
             ..self.options.pack
         };
         let packing = pack(charts, &quick, self.for_each)?;
-        if packing.utilisation + THOROUGH_GAIN < self.options.min_utilisation {
+        let hopeless = packing.utilisation + THOROUGH_GAIN < self.options.min_utilisation;
+        if hopeless || !self.can_improve(charts) {
             return Ok(packing);
         }
         pack(charts, &self.options.pack, self.for_each)
@@ -258,7 +327,7 @@ fn wasteful_charts(charts: &[FlatChart]) -> Vec<usize> {
     let large = |c: &FlatChart| c.faces.len() > 1 && c.area() > total * MIN_DIVIDED_SHARE;
     let waste = |c: &FlatChart| {
         if large(c) {
-            c.box_area() - c.area()
+            c.box_sides().element_product() - c.area()
         } else {
             0.0
         }
