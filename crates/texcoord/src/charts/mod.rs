@@ -33,6 +33,7 @@
 //! theirs by instruction set. Charts hold at most 80,000 faces for its sake. Holes of a chart count as waste only by the
 //! chart's box.
 
+mod atlas;
 mod cholesky;
 mod cut;
 mod dilate;
@@ -59,6 +60,7 @@ mod surface;
 mod tutte;
 mod unwrap;
 
+pub use atlas::Atlas;
 pub use dilate::NearestCovered;
 pub use disk::Disk;
 pub use distortion::{Distortion, MAX_COUNTED_OVERLAPS, singular_values};
@@ -71,4 +73,4 @@ pub use pack::{AtlasSize, Density, Effort, MAX_ATLAS_SIZE, PackOptions, Packing,
 pub use pairs::triangle_pairs;
 pub use segment::Segmentation;
 pub use surface::{FaceFault, Surface, SurfaceReport, Weld};
-pub use unwrap::{Atlas, Progress, UnwrapOptions, unwrap};
+pub use unwrap::{Progress, UnwrapOptions, unwrap};
