@@ -41,6 +41,10 @@
 //! [`surface`] has Bézier patches, B-spline and NURBS surfaces, whose (u,v) come for free, with normals and tangents,
 //! and triangles within a tolerance of them that leave no cracks; [`teapot`] holds the 32 best known patches.
 //!
+//! # Charts
+//! `charts` (a feature of that name) makes coordinates for a mesh that has none: it cuts charts, flattens them without
+//! folds and nearly isometrically, packs them by their shapes, and measures distortion.
+//!
 //! # Conventions
 //! (s,t) has its origin at the top left, t down, as glTF. (u,v) are parameters of a surface; its front is the
 //! side that ∂u × ∂v points to. Screen derivatives are per pixel; whether y counts rows down or up is the
@@ -57,9 +61,10 @@
 //! | mappings: derivatives | 1e-5 | off the axis, rays that do not graze |
 //! | surface points | n·2⁻⁵⁰ of the largest control coordinate | degrees that sum to n, times the ratio of weights |
 //! | tessellation | the caller's tolerance, then one rounding to f32 | up to 1024 steps a side |
+//! | charts | L² stretch ≤ 1.02 (an option), no fold, no overlap | any mesh; triangles no thinner than 2⁻²⁴ of the image |
 //!
 //! # Limits
-//! No charts yet. Sums are in f64 and rounded once: this is the reference that faster paths are held against. Mappings and
+//! Sums are in f64 and rounded once: this is the reference that faster paths are held against. Mappings and
 //! surfaces have no packets.
 //!
 //! # Sources
@@ -67,6 +72,8 @@
 //! KHR_texture_transform; Newell 1975; Crow 1987; Bier & Sloan 1986, "Two-Part Texture Mappings".
 #![forbid(unsafe_code)]
 
+#[cfg(feature = "charts")]
+pub mod charts;
 mod dual;
 pub mod mapping;
 pub mod packet;

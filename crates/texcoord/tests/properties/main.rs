@@ -5,6 +5,8 @@
     reason = "strategies make grid points and exponents from fractions"
 )]
 
+#[cfg(feature = "charts")]
+mod charts;
 mod mapping;
 mod oracle;
 mod packet;
