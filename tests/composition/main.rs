@@ -14,6 +14,7 @@ mod frontier;
 mod glb;
 mod hard_cases;
 mod lighting;
+mod mappings;
 mod mutations;
 mod needs;
 mod output;

@@ -1,6 +1,6 @@
 //! Textured pictures of 3D scenes on a machine without a GPU.
 //!
-//! This crate composes seven smaller ones into a renderer: it loads a glTF scene, plans what a
+//! This crate composes seven smaller ones into a renderer: it loads a glTF scene or a scene file, plans what a
 //! picture of it needs, prepares just that, renders it and writes the file. The picture is the same
 //! to the bit on every machine, for any number of threads.
 //!
@@ -56,6 +56,11 @@
 //! assert_eq!(film.pixel(48, 16).unlit_coverage, 0.0);
 //! # Ok::<(), texrender::Error>(())
 //! ```
+//!
+//! # Scene files
+//! TOML that says what glTF cannot (`docs/scene-file.md` is the reference, [`load::json_schema`] the schema):
+//! [`load_document`] reads one with the picture that it asks for. Its mappings are [`scene::SurfaceMapping`]s, evaluated
+//! per pixel; [`Settings::show`] makes coordinates visible.
 //!
 //! # The pieces
 //! The seven crates below are re-exported: [`texcoord`], [`sampler`], [`mipmap`], [`normalmap`],

@@ -19,11 +19,12 @@ pub enum BackFacets {
 /// ```text
 ///   normal nearest to   s   t   p
 ///         ±x            y   z   x       s is negated on facets toward −x, −y, −z where they are to be Readable
-///         ±y            z   x   y
+///         ±y           −x   z   y
 ///         ±z            x   y   z
 /// ```
 ///
-/// Seen from the outside of +x, +y, +z the turn from s to t is counter-clockwise (t up). The unit of (s,t) is that of
+/// Seen from the outside of +x, +y, +z the turn from s to t is counter-clockwise (t up); on the sides t points along +z,
+/// so that pictures stand upright there. The unit of (s,t) is that of
 /// mapping space. The coordinate jumps where the axis changes: [`super::Triplanar`] blends instead. Ties and a zero or
 /// NaN normal as in [`CubeFace::toward`].
 ///
@@ -58,7 +59,7 @@ impl Facets {
     pub fn frame(&self, face: CubeFace) -> [DVec3; 3] {
         let [s, t, outward] = match face.axis() {
             0 => [DVec3::Y, DVec3::Z, DVec3::X],
-            1 => [DVec3::Z, DVec3::X, DVec3::Y],
+            1 => [DVec3::NEG_X, DVec3::Z, DVec3::Y],
             _ => [DVec3::X, DVec3::Y, DVec3::Z],
         };
         match (face, self.backs) {

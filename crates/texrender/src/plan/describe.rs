@@ -121,8 +121,24 @@ impl Plan {
                 need.reasons.join(", ")
             )?;
         }
+        for need in &self.volumes {
+            writeln!(
+                out,
+                "  volume      {} {}x{}x{} as {:?}: {}",
+                scene.images[need.image].name,
+                need.size.x,
+                need.size.y,
+                need.size.z,
+                need.role,
+                need.reasons.join(", ")
+            )?;
+        }
+        let read = |i: usize| {
+            let image = self.textures.iter().any(|need| need.image == i);
+            image || self.volumes.iter().any(|need| need.image == i)
+        };
         let unused: Vec<&str> = (0..scene.images.len())
-            .filter(|&i| self.textures.iter().all(|need| need.image != i))
+            .filter(|&i| !read(i))
             .map(|i| scene.images[i].name.as_str())
             .collect();
         if !unused.is_empty() {

@@ -9,7 +9,7 @@ use texcoord::mapping::{PlacedMapping, Placement};
 use super::layout::{Layout, Wants};
 use crate::plan::{Draw, Kernel, Plan, Viewpoint};
 use crate::prepare::Resources;
-use crate::scene::{Projection, Scene};
+use crate::scene::{MappingSpace, Projection, Scene, SurfaceMapping};
 
 /// A scene with all that was made for a picture of it.
 pub(super) struct Frame<'a> {
@@ -79,7 +79,10 @@ impl<'a> Frame<'a> {
 
 /// A mapping of a draw's space as one of the world.
 fn in_world(scene: &Scene, mapping: usize, draw: &Draw) -> Option<PlacedMapping> {
-    let placed = scene.mappings.get(mapping)?;
+    let SurfaceMapping { placed, space } = *scene.mappings.get(mapping)?;
+    if space == MappingSpace::World {
+        return Some(placed);
+    }
     let from_world = DAffine3::from_mat4(draw.world.inverse());
     let to_mapping = placed.placement.object_to_mapping() * from_world;
     Some(PlacedMapping {

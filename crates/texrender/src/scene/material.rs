@@ -2,6 +2,7 @@
 
 use glam::{Vec3, Vec4};
 use texcoord::TextureTransform;
+use texcoord::mapping::PlacedMapping;
 
 /// Where a surface is on a texture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -11,6 +12,25 @@ pub enum Coordinates {
     /// A mapping of where it lies: index into [`super::Scene::mappings`], evaluated per pixel. Where it gives no
     /// coordinate the surface is as if it had no such map.
     Mapping(usize),
+}
+
+/// A mapping from where surfaces lie to texture coordinates.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SurfaceMapping {
+    /// The mapping.
+    pub placed: PlacedMapping,
+    /// Whose space it looks at.
+    pub space: MappingSpace,
+}
+
+/// The space that a mapping looks at.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum MappingSpace {
+    /// That of the primitive that it is used on: the texture moves with it.
+    #[default]
+    Object,
+    /// The world: the primitive moves through the texture.
+    World,
 }
 
 /// A texture as a material refers to it.

@@ -14,14 +14,14 @@ use std::path::PathBuf;
 
 use glam::DMat4;
 use shading::PunctualLight;
-use texcoord::mapping::PlacedMapping;
 
 pub use camera::{Camera, Projection};
 pub(crate) use geometry::cofactors;
 pub use geometry::{Bounds, Primitive, Topology};
 pub use image::{ImageData, ImageSource};
 pub use material::{
-    AlphaMode, Coordinates, Material, MaterialModel, NormalTexture, OcclusionTexture, TextureUse,
+    AlphaMode, Coordinates, MappingSpace, Material, MaterialModel, NormalTexture, OcclusionTexture,
+    SurfaceMapping, TextureUse,
 };
 pub use texture::{ImageTexture, SolidPattern, SolidTexture, Texture, VolumeTexture};
 
@@ -38,8 +38,8 @@ pub struct Scene {
     pub materials: Vec<Material>,
     /// Textures that materials refer to.
     pub textures: Vec<Texture>,
-    /// Mappings that materials refer to, each of the space of the primitive that it is used on.
-    pub mappings: Vec<PlacedMapping>,
+    /// Mappings that materials refer to.
+    pub mappings: Vec<SurfaceMapping>,
     /// Images, undecoded.
     pub images: Vec<ImageSource>,
     /// Cameras, in the order of the file.

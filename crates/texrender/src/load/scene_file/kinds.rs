@@ -112,7 +112,7 @@ static LIGHT: Kind = Kind {
     keys: &[
         key("kind", Value::Choice(&["directional", "point", "spot"]), Default::Required, "Infinitely far, in all directions from a point, or a cone."),
         key("color", Value::Color, Default::Is("white"), "Its colour."),
-        key("intensity", number(0.0, 1e30, "lux of directional lights, candela of others"), Default::Number(1.0), "Multiplies the colour."),
+        key("intensity", number(0.0, INFINITE, "lux of directional lights, candela of others"), Default::Number(1.0), "Multiplies the colour."),
         of(&["point", "spot"], "position", numbers(3, LENGTH), Default::Required, "Where it is."),
         of(&["directional", "spot"], "direction", numbers(3, ""), Default::Required, "Where the light travels to; any length above 0."),
         of(&["point", "spot"], "range", positive(LENGTH), Default::Is("infinite"), "Distance at which it has faded to nothing."),
@@ -165,11 +165,12 @@ const STAGED: &[&str] = &["two-stage"];
 #[rustfmt::skip]
 static MAPPING: Kind = Kind {
     name: "mapping",
-    about: "Where a surface is on a texture, from its place in the object's space, pixel by pixel.",
+    about: "Where a surface is on a texture, from its place in space, pixel by pixel.",
     tag: Some("kind"),
     keys: &[
         key("kind", Value::Choice(&["planar", "parallel", "perspective", "facets", "triplanar", "spherical", "cylindrical", "cube", "two-stage"]), Default::Required, "Which function."),
-        key("flip_t", Value::Flag, Default::Is("true where the function counts t upward: planar, perspective, facets, triplanar, cylindrical, `upward` spheres, two-stage planes and cylinders"), "Whether 1 − t is taken of images, whose t counts downward."),
+        key("space", Value::Choice(&["object", "world"]), Default::Is("object; of `perspective` world"), "Whether the texture moves with the object, or the object through the texture."),
+        key("flip_t", Value::Flag, Default::Is("true where the function counts t upward: planar, perspective, facets, triplanar, cylindrical, `from-bottom` spheres, two-stage planes and cylinders"), "Whether 1 − t is taken of images, whose t counts downward."),
         of(&["planar"], "origin", numbers(3, LENGTH), Default::Numbers(&[0.0, 0.0, 0.0]), "Where (s,t) is (0,0)."),
         of(&["planar"], "s_axis", numbers(3, ""), Default::Numbers(&[1.0, 0.0, 0.0]), "Along which s grows; any length."),
         of(&["planar"], "t_axis", numbers(3, ""), Default::Numbers(&[0.0, 1.0, 0.0]), "Along which t grows; any length."),
@@ -181,7 +182,7 @@ static MAPPING: Kind = Kind {
         of(&["perspective"], "fov", number(0.001, 179.0, DEGREES), Default::Number(30.0), "Vertical angle that the texture fills."),
         of(&["perspective"], "aspect", positive("width over height"), Default::Number(1.0), "Shape of the texture as it is thrown."),
         of(PLACED, "axis", numbers(3, ""), Default::Is("+y; of cubes and two-stage boxes +z"), "The axis of sphere and cylinder, the z of the others; any length."),
-        of(PLACED, "start", numbers(3, ""), Default::Is("+z, or +x where the axis is along z"), "The direction of φ = 0, the x of the others; the part of it across the axis counts."),
+        of(PLACED, "start", numbers(3, ""), Default::Is("−z of spheres, cylinders and two-stage mappings, so that a picture's middle is in front; +x of the others, or where the axis is along z"), "The direction of φ = 0, the x of the others; the part of it across the axis counts."),
         of(PLACED, "center", numbers(3, LENGTH), Default::Numbers(&[0.0, 0.0, 0.0]), "Centre of the mapping."),
         of(PLACED, "scale", Value::Scale, Default::Number(1.0), "Size of the mapping's unit along start, across and axis; 0 is not allowed."),
         of(&["facets", "triplanar"], "backs", Value::Choice(&["mirrored", "readable"]), Default::Text("readable"), "What facets toward the negative axes show."),
@@ -243,7 +244,7 @@ static MATERIAL: Kind = Kind {
         of(LIT, "occlusion_map", Value::TextureUse(&TEXTURE_USE), Default::Is("none"), "Visibility of the surroundings in red; linear."),
         of(LIT, "occlusion_strength", number(0.0, 1.0, ""), Default::Number(1.0), "How much of it counts."),
         of(LIT, "emissive", Value::Color, Default::Is("black"), "Radiance; multiplies the map."),
-        of(LIT, "emissive_strength", number(0.0, 1e30, ""), Default::Number(1.0), "Multiplies it once more."),
+        of(LIT, "emissive_strength", number(0.0, INFINITE, ""), Default::Number(1.0), "Multiplies it once more."),
         of(LIT, "emissive_map", Value::TextureUse(&TEXTURE_USE), Default::Is("none"), "Emitted colour."),
     ],
 };

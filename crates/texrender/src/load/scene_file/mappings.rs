@@ -9,11 +9,12 @@ use texcoord::mapping::{
 
 use super::table::Table;
 use crate::error::Error;
+use crate::scene::{MappingSpace, SurfaceMapping};
 
 /// A mapping, and whether images are turned over on it.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct NamedMapping {
-    pub placed: PlacedMapping,
+    pub mapping: SurfaceMapping,
     /// Whether its t grows upward, as that of images does not.
     pub flip_t: bool,
 }
@@ -26,8 +27,15 @@ pub(super) fn mapping(table: &Table<'_>) -> Result<NamedMapping, Error> {
         return Err(table.error_at("scale", "0 has no inverse; give other numbers"));
     }
     let placement = placement(table).map_err(|error| table.error(error.to_string()))?;
+    let space = match (table.text("space"), table.tag()) {
+        (Some("world"), _) | (None, "perspective") => MappingSpace::World,
+        _ => MappingSpace::Object,
+    };
     Ok(NamedMapping {
-        placed: PlacedMapping { placement, mapping },
+        mapping: SurfaceMapping {
+            placed: PlacedMapping { placement, mapping },
+            space,
+        },
         flip_t: table.flag("flip_t").unwrap_or(t_is_up),
     })
 }
@@ -170,7 +178,14 @@ fn placement(table: &Table<'_>) -> Result<Placement, MappingError> {
     let default = if is_cube { DVec3::Z } else { DVec3::Y };
     let axis = table.vec3("axis").unwrap_or(default);
     let along_z = axis.cross(DVec3::Z).length() <= 1e-9 * axis.length();
-    let default_start = if along_z { DVec3::X } else { DVec3::Z };
+    let is_round = matches!(table.tag(), "spherical" | "cylindrical" | "two-stage");
+    let default_start = if is_round && !along_z {
+        DVec3::NEG_Z
+    } else if axis.cross(DVec3::X).length() > 1e-9 * axis.length() {
+        DVec3::X
+    } else {
+        DVec3::Y
+    };
     let start = table.vec3("start").unwrap_or(default_start);
     let frame = Placement::from_frame(table.sure_vec3("center"), axis, start)?;
     let scale = DAffine3::from_scale(table.scale("scale").recip());

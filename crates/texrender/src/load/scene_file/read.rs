@@ -8,7 +8,7 @@ use texcoord::TextureTransform;
 use toml::de::DeTable;
 
 use super::kinds::SCENE;
-use super::mappings::{NamedMapping, mapping};
+use super::mappings::mapping;
 use super::materials::material;
 use super::objects::add_object;
 use super::table::{Source, Table, nearest};
@@ -158,10 +158,10 @@ impl<'a> Reader<'a> {
         }
         for (name, table) in file.named("mapping")? {
             check_new(&table, "mapping", name, &self.mappings)?;
-            let NamedMapping { placed, flip_t } = mapping(&table)?;
-            let mapping = self.scene.mappings.len();
+            let made = mapping(&table)?;
+            let (mapping, flip_t) = (self.scene.mappings.len(), made.flip_t);
             self.mappings.insert(name, MappedTo { mapping, flip_t });
-            self.scene.mappings.push(placed);
+            self.scene.mappings.push(made.mapping);
         }
         for (name, table) in file.named("material")? {
             check_new(&table, "material", name, &self.materials)?;

@@ -107,7 +107,7 @@ pub(super) fn cuboid(size: DVec3) -> Primitive {
     mesh.primitive()
 }
 
-/// A sphere about y: s eastward from +z, t from the north pole.
+/// A sphere about y: s eastward from −z, t from the north pole.
 pub(super) fn sphere(radius: f64, segments: u32) -> Primitive {
     let mut mesh = Builder::default();
     let rows = (segments / 2).max(2);
@@ -129,7 +129,7 @@ pub(super) fn sphere(radius: f64, segments: u32) -> Primitive {
     mesh.primitive()
 }
 
-/// A cylinder about y: s eastward from +z, t from the top; caps show the texture's middle disc.
+/// A cylinder about y: s eastward from −z, t from the top; caps show the texture's middle disc.
 pub(super) fn cylinder(radius: f64, height: f64, segments: u32, caps: Caps) -> Primitive {
     let mut mesh = Builder::default();
     mesh.grid([segments, 1], |at| {
@@ -167,12 +167,13 @@ fn cap(mesh: &mut Builder, radius: f64, y: f64, segments: u32) {
     }
 }
 
-/// A torus about y: s eastward around the ring from +z, t around the tube from its top over the outside.
+/// A torus about y: s eastward around the ring from −z, t around the tube from its top over the outside.
 pub(super) fn torus(ring: f64, tube: f64, segments: u32) -> Primitive {
     let mut mesh = Builder::default();
     let rows = (segments / 2).max(3);
     mesh.grid([segments, rows], |at| {
-        let (around, section) = (around(at.x), around(at.y));
+        // The tube's section from its top over the outside.
+        let (around, section) = (around(at.x), -around(at.y));
         let outward = DVec3::new(around.x, 0.0, around.y);
         let normal = outward * section.x + DVec3::Y * section.y;
         (outward * ring + normal * tube, normal, at)
@@ -245,9 +246,10 @@ fn faces() -> Vec<([DVec3; 3], [DVec2; 3])> {
     faces
 }
 
-/// (x, z) on the unit circle at a part of a turn, from +z toward +x; exact at quarters.
+/// (x, z) on the unit circle at a part of a turn, from −z over −x, so that the middle of a turn is in front; exact at
+/// quarters.
 fn around(turn: f64) -> DVec2 {
-    DVec2::new(sin_half_turns(2.0 * turn), sin_half_turns(2.0 * turn + 0.5))
+    -DVec2::new(sin_half_turns(2.0 * turn), sin_half_turns(2.0 * turn + 0.5))
 }
 
 /// sin πx, exact at multiples of ½.
