@@ -1,19 +1,12 @@
 //! The smallest kernel that serves a surface.
 
 use glam::{Vec3, Vec4};
-use mipmap::{MipFilter, SamplerState};
-use texcoord::AffineTransform;
 
-use super::filter::{MapReading, chosen_filter, chosen_reading};
+use super::map::Map;
 use super::shown::Shown;
-use super::texture::{PyramidNeed, Readers, SheetNeed, TextureNeed, TextureRole};
-use super::volume::VolumeNeed;
+use super::texture::TextureRole;
 use super::{Plan, TangentNeed};
-use crate::scene::{
-    AlphaMode, Coordinates, ImageTexture, Material, MaterialModel, Primitive, Scene, Texture,
-    TextureUse, Topology,
-};
-use crate::settings::Aov;
+use crate::scene::{AlphaMode, Coordinates, Material, MaterialModel, Primitive, Scene, Topology};
 
 /// How the surface of a primitive is shaded: its factors, and the maps that change them.
 #[derive(Clone, Debug)]
@@ -133,43 +126,6 @@ pub enum TangentSource {
     Mapping,
 }
 
-/// A texture as a kernel samples it.
-#[derive(Clone, Copy, Debug)]
-pub struct Map {
-    /// What is read.
-    pub source: MapSource,
-    /// Where.
-    pub coordinates: Coordinates,
-    /// Applied to (s,t); `None` for the identity.
-    pub transform: Option<AffineTransform>,
-    /// What stands for it where a mapping gives no coordinate: it changes nothing.
-    pub neutral: Vec4,
-}
-
-/// What a map reads.
-#[derive(Clone, Copy, Debug)]
-pub enum MapSource {
-    /// An image.
-    Image(ImageMap),
-    /// A formula: index into [`Scene::textures`].
-    Solid(usize),
-    /// A digitised solid: index into [`Plan::volumes`].
-    Volume(usize),
-}
-
-/// An image as a kernel samples it.
-#[derive(Clone, Copy, Debug)]
-pub struct ImageMap {
-    /// Index into [`Plan::textures`].
-    pub texture: usize,
-    /// Address modes and filters.
-    pub sampler: SamplerState,
-    /// Whether another filter than the sampler's reads the pyramid.
-    pub reading: MapReading,
-    /// Index into [`Plan::sheets`]; `None` where packets do not read by that sampler or filter.
-    pub sheet: Option<usize>,
-}
-
 impl Kernel {
     /// Whether light reaches the surface.
     #[must_use]
@@ -180,11 +136,11 @@ impl Kernel {
 
 /// Turns the material of one primitive into a kernel, listing what it needs in the plan.
 pub(super) struct KernelBuilder<'a> {
-    scene: &'a Scene,
+    pub(super) scene: &'a Scene,
     index: usize,
-    primitive: &'a Primitive,
-    material: Material,
-    plan: &'a mut Plan,
+    pub(super) primitive: &'a Primitive,
+    pub(super) material: Material,
+    pub(super) plan: &'a mut Plan,
 }
 
 impl<'a> KernelBuilder<'a> {
@@ -197,18 +153,6 @@ impl<'a> KernelBuilder<'a> {
             material: scene.material(primitive),
             plan,
         }
-    }
-
-    pub(super) fn scene(&self) -> &'a Scene {
-        self.scene
-    }
-
-    pub(super) fn primitive(&self) -> &'a Primitive {
-        self.primitive
-    }
-
-    pub(super) fn material(&self) -> &Material {
-        &self.material
     }
 
     /// What its primitive alone decides: white, without light, maps or holes.
@@ -373,73 +317,6 @@ impl<'a> KernelBuilder<'a> {
             "occlusion",
         )?;
         Some((map, occlusion.strength))
-    }
-
-    /// A map, if the primitive has coordinates for it.
-    fn map(&mut self, source: Option<TextureUse>, role: TextureRole, purpose: &str) -> Option<Map> {
-        let source = source?;
-        let texture = self.scene.textures.get(source.texture)?;
-        match source.coordinates {
-            Coordinates::Set(set) if set >= self.primitive.texcoords.len() => {
-                self.plan.warnings.push(format!(
-                    "mesh '{}' has no TEXCOORD_{set} for the {purpose} map of material '{}'; drawn without that map",
-                    self.primitive.name, self.material.name
-                ));
-                return None;
-            }
-            Coordinates::Mapping(mapping) if mapping >= self.scene.mappings.len() => return None,
-            _ => {}
-        }
-        let reason = format!("{purpose} of '{}'", self.material.name);
-        let read = match texture {
-            Texture::Image(texture) => MapSource::Image(self.image(texture, role, reason)),
-            Texture::Solid(_) => MapSource::Solid(source.texture),
-            Texture::Volume(texture) => MapSource::Volume(VolumeNeed::list(
-                &mut self.plan.volumes,
-                texture,
-                role,
-                reason,
-            )),
-        };
-        Some(Map {
-            source: read,
-            coordinates: source.coordinates,
-            transform: (!source.transform.is_identity()).then(|| source.transform.affine()),
-            neutral: match role {
-                TextureRole::Normal => Vec4::new(0.5, 0.5, 1.0, 1.0),
-                _ => Vec4::ONE,
-            },
-        })
-    }
-
-    fn image(&mut self, texture: &ImageTexture, role: TextureRole, reason: String) -> ImageMap {
-        let sampler = chosen_filter(self.plan.settings.filter, texture.sampler);
-        let minified = sampler.mip != MipFilter::None || sampler.max_anisotropy > 1.0;
-        let pyramid = if minified {
-            PyramidNeed::Full
-        } else {
-            PyramidNeed::None
-        };
-        let texture = TextureNeed::list(
-            &mut self.plan.textures,
-            texture.image,
-            role,
-            pyramid,
-            reason,
-        );
-        let reading = chosen_reading(self.plan.settings.filter, &sampler);
-        let in_packets = reading == MapReading::Sampler && mipmap::packet::reads(&sampler);
-        let tells_level = self.plan.settings.aovs.contains(&Aov::MipLevel);
-        if !in_packets || tells_level {
-            self.plan.textures[texture].readers = Readers::Pixels;
-        }
-        ImageMap {
-            texture,
-            reading,
-            sheet: in_packets
-                .then(|| SheetNeed::list(&mut self.plan.sheets, texture, sampler.address)),
-            sampler,
-        }
     }
 }
 

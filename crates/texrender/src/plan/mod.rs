@@ -8,6 +8,7 @@ mod describe;
 mod environment;
 mod filter;
 mod kernel;
+mod map;
 mod shown;
 mod texture;
 mod view;
@@ -24,9 +25,9 @@ pub use describe::scene_summary;
 pub use environment::EnvironmentNeed;
 pub use filter::MapReading;
 pub use kernel::{
-    Coverage, Curvature, ImageMap, Kernel, Lighting, LitKernel, Map, MapSource, Reflectance,
-    Sidedness, TangentSource,
+    Coverage, Curvature, Kernel, Lighting, LitKernel, Reflectance, Sidedness, TangentSource,
 };
+pub use map::{ImageMap, Map, MapSource};
 pub use shown::Shown;
 pub use texture::{PyramidNeed, Readers, SheetNeed, TextureNeed, TextureRole};
 pub use view::Viewpoint;

@@ -31,14 +31,14 @@ pub struct Shown {
 impl KernelBuilder<'_> {
     /// A kernel that shows the coordinates of its surface.
     pub(super) fn shown(&self, show: Show) -> Kernel {
-        let primitive = self.primitive();
-        let texture = uses(self.material()).find(|source| match source.coordinates {
+        let primitive = self.primitive;
+        let texture = uses(&self.material).find(|source| match source.coordinates {
             Coordinates::Set(set) => set < primitive.texcoords.len(),
             Coordinates::Mapping(_) => true,
         });
         let first_set = (!primitive.texcoords.is_empty()).then_some(Coordinates::Set(0));
         let transform = texture.map(|source| source.transform);
-        let image = texture.and_then(|source| match self.scene().textures.get(source.texture) {
+        let image = texture.and_then(|source| match self.scene.textures.get(source.texture) {
             Some(Texture::Image(texture)) => Some(texture.image),
             _ => None,
         });

@@ -6,13 +6,13 @@ use glam::{IVec2, Vec4};
 use normalmap::packet::{TangentFrame, curvature_variance, decode_normal, filtered_variance};
 use shading::packet::Vec3x16;
 use texcoord::AffineTransform;
-use texcoord::mapping::SurfacePoint;
-use texcoord::packet::{F64x16, PacketWeights};
+use texcoord::packet::F64x16;
 
+use super::coordinates::Coordinates;
 use super::frame::Frame;
 use super::lanes::{Lanes, Points, Rows};
 use super::layout::{Layout, Normals};
-use super::mapped::{MOST_LOOKUPS, MappedLanes, MappedLookup, SurfaceLanes};
+use super::mapped::{MappedLanes, SurfaceLanes, mapped};
 use super::record::Records;
 use super::textures;
 use crate::plan::{Map, MapSource, TangentSource};
@@ -25,17 +25,6 @@ pub(super) struct ShadingNormals<S: Simd> {
     pub variance: f32x16<S>,
 }
 
-/// Texture coordinates with their screen derivatives.
-#[derive(Clone, Copy)]
-pub(super) struct Coordinates<S: Simd> {
-    pub s: F64x16<S>,
-    pub t: F64x16<S>,
-    pub ds_dx: f32x16<S>,
-    pub dt_dx: f32x16<S>,
-    pub ds_dy: f32x16<S>,
-    pub dt_dy: f32x16<S>,
-}
-
 /// Sixteen points of surfaces of one kernel.
 pub(super) struct Fragments<'a, S: Simd> {
     pub simd: S,
@@ -46,11 +35,11 @@ pub(super) struct Fragments<'a, S: Simd> {
     /// The weights, rounded.
     weights: [f32x16<S>; 3],
     /// Scale of the pixels' footprints.
-    footprint: f32,
+    pub footprint: f32,
     /// Coordinates of the layout's first set.
     first_set: Option<Coordinates<S>>,
     /// Where the points lie and what each of the layout's mappings makes of it, if there are any.
-    mapped: Option<Box<(SurfaceLanes, Vec<MappedLanes<'a>>)>>,
+    pub mapped: Option<Box<(SurfaceLanes, Vec<MappedLanes<'a>>)>>,
 }
 
 impl<'a, S: Simd> Fragments<'a, S> {
@@ -222,12 +211,6 @@ impl<'a, S: Simd> Fragments<'a, S> {
         plain.placed(self.simd, transform)
     }
 
-    /// Where a lane looks, if the layout asks for it; else the origin.
-    pub(super) fn surface_point(&self, lane: usize) -> SurfacePoint {
-        let surface = self.mapped.as_ref().map(|mapped| &mapped.0);
-        surface.map_or(SurfacePoint::default(), |surface| surface.point(lane))
-    }
-
     /// Colours of a map under the pixels.
     #[inline(always)]
     pub(super) fn sample(&self, map: &Map) -> [f32x16<S>; 4] {
@@ -237,75 +220,6 @@ impl<'a, S: Simd> Fragments<'a, S> {
             }
             _ => self.blended(map),
         }
-    }
-
-    /// Colours of a map that is read where a mapping says, or from a solid.
-    #[inline(never)]
-    fn blended(&self, map: &Map) -> [f32x16<S>; 4] {
-        let simd = self.simd;
-        let Set::Mapping(mapping) = map.coordinates else {
-            let at = self.map_coordinates(map);
-            return textures::sample_source(simd, self.frame, map, &at, &[[0.0; 16]; 3]);
-        };
-        let neutral = self.color(map.neutral);
-        let mut sum = [self.splat(0.0); 4];
-        let mut found = self.splat(0.0);
-        for k in 0..MOST_LOOKUPS {
-            let Some(lookup) = self.lookup(mapping, k) else {
-                break;
-            };
-            let at = lookup.coordinates.placed(simd, map.transform.as_ref());
-            let texel = textures::sample_source(simd, self.frame, map, &at, &lookup.p);
-            for (sum, texel) in sum.iter_mut().zip(texel) {
-                *sum += lookup
-                    .weight
-                    .simd_gt(0.0)
-                    .select(texel * lookup.weight, self.splat(0.0));
-            }
-            found += lookup.weight;
-        }
-        let found = found.simd_gt(0.0);
-        std::array::from_fn(|c| found.select(sum[c], neutral[c]))
-    }
-
-    fn lookup(&self, mapping: usize, k: usize) -> Option<MappedLookup<S>> {
-        let (_, mappings) = &**self.mapped.as_ref()?;
-        let lanes = mappings.iter().find(|lanes| lanes.mapping == mapping)?;
-        lanes.lookup(self.simd, k, self.footprint)
-    }
-
-    /// Normals that a map bends in the frames of the mapping that gives it its coordinates: the mean over its lookups,
-    /// each in its own frame, and the variance that the map's own filter hides.
-    #[inline(never)]
-    fn bent_by_mapping(
-        &self,
-        map: &Map,
-        scale: f32,
-        normal: Vec3x16<S>,
-    ) -> (Vec3x16<S>, f32x16<S>) {
-        let (simd, none) = (self.simd, self.splat(0.0));
-        let (mut sum, mut hidden) = (Vec3x16::grey(none), none);
-        let (Set::Mapping(mapping), Some(mapped)) = (map.coordinates, &self.mapped) else {
-            return (normal, none);
-        };
-        let (surface, mappings) = &**mapped;
-        let Some(lanes) = mappings.iter().find(|lanes| lanes.mapping == mapping) else {
-            return (normal, none);
-        };
-        for k in 0..MOST_LOOKUPS {
-            let Some(lookup) = lanes.lookup(simd, k, self.footprint) else {
-                break;
-            };
-            let at = lookup.coordinates.placed(simd, map.transform.as_ref());
-            let [x, y, z, _] = textures::sample_source(simd, self.frame, map, &at, &lookup.p);
-            let texel = Vec3x16::new(x, y, z);
-            let (tangent, handedness) = lanes.tangents(simd, k, surface, normal);
-            let frame = turned(TangentFrame::new(normal, tangent, handedness), map);
-            let weight = lookup.weight;
-            sum += frame.perturbed(decode_normal(simd, texel, scale)) * weight;
-            hidden += filtered_variance(simd, decode_normal(simd, texel, 1.0), scale) * weight;
-        }
-        (sum.normalize_or(normal), hidden)
     }
 
     /// Unit shading normals in the world on the side that is seen, and how much the normals under the pixels
@@ -414,95 +328,10 @@ impl<'a, S: Simd> Fragments<'a, S> {
 
 /// The frame of a map's coordinates, transform applied, from that of the plain ones.
 #[inline(always)]
-fn turned<S: Simd>(frame: TangentFrame<S>, map: &Map) -> TangentFrame<S> {
+pub(super) fn turned<S: Simd>(frame: TangentFrame<S>, map: &Map) -> TangentFrame<S> {
     match &map.transform {
         Some(transform) => frame.turned(transform.matrix.matrix2.as_mat2()),
         None => frame,
-    }
-}
-
-/// What the mappings of a layout make of the points.
-#[inline(never)]
-fn mapped<'a, S: Simd>(
-    frame: &'a Frame<'a>,
-    layout: &Layout,
-    lanes: &Lanes,
-    records: &Records,
-    weights: &PacketWeights<S>,
-) -> Box<(SurfaceLanes, Vec<MappedLanes<'a>>)> {
-    let surface = SurfaceLanes::new(frame, layout, lanes, records, weights);
-    let mappings = layout.mappings.iter();
-    let mappings = mappings.map(|&mapping| MappedLanes::new(frame, mapping, &surface));
-    let mappings = mappings.collect();
-    Box::new((surface, mappings))
-}
-
-impl<S: Simd> Coordinates<S> {
-    /// With the transform of a map applied.
-    #[inline(always)]
-    fn placed(self, simd: S, transform: Option<&AffineTransform>) -> Self {
-        match transform {
-            Some(transform) => self.transformed(simd, transform),
-            None => self,
-        }
-    }
-
-    #[inline(always)]
-    fn zero(simd: S) -> Self {
-        let (wide, narrow) = (F64x16::splat(simd, 0.0), f32x16::splat(simd, 0.0));
-        Self {
-            s: wide,
-            t: wide,
-            ds_dx: narrow,
-            dt_dx: narrow,
-            ds_dy: narrow,
-            dt_dy: narrow,
-        }
-    }
-
-    #[inline(always)]
-    fn scale(&mut self, footprint: f32) {
-        self.ds_dx *= footprint;
-        self.dt_dx *= footprint;
-        self.ds_dy *= footprint;
-        self.dt_dy *= footprint;
-    }
-
-    /// [`AffineTransform::apply`].
-    #[inline(always)]
-    fn transformed(&self, simd: S, transform: &AffineTransform) -> Self {
-        let matrix = &transform.matrix;
-        let linear = matrix.matrix2.as_mat2();
-        let (along_s, along_t) = (linear.x_axis, linear.y_axis);
-        Self {
-            s: self.moved(
-                simd,
-                [
-                    matrix.matrix2.x_axis.x,
-                    matrix.matrix2.y_axis.x,
-                    matrix.translation.x,
-                ],
-            ),
-            t: self.moved(
-                simd,
-                [
-                    matrix.matrix2.x_axis.y,
-                    matrix.matrix2.y_axis.y,
-                    matrix.translation.y,
-                ],
-            ),
-            ds_dx: self.ds_dx * along_s.x + self.dt_dx * along_t.x,
-            dt_dx: self.ds_dx * along_s.y + self.dt_dx * along_t.y,
-            ds_dy: self.ds_dy * along_s.x + self.dt_dy * along_t.x,
-            dt_dy: self.ds_dy * along_s.y + self.dt_dy * along_t.y,
-        }
-    }
-
-    /// a·s + b·t + c.
-    #[inline(always)]
-    fn moved(&self, simd: S, [a, b, c]: [f64; 3]) -> F64x16<S> {
-        let [a, b] = [F64x16::splat(simd, a), F64x16::splat(simd, b)];
-        self.s * a + self.t * b + F64x16::splat(simd, c)
     }
 }
 

@@ -3,16 +3,21 @@
 use fearless_simd::prelude::*;
 use fearless_simd::{Simd, f32x16};
 use glam::{DVec3, Vec3};
+use normalmap::packet::{TangentFrame, decode_normal, filtered_variance};
 use shading::packet::{LANES, Vec3x16};
 use texcoord::mapping::{Lookup, Lookups, Mapping, PlacedMapping, SurfacePoint, Viewer};
 use texcoord::packet::{F64x16, PacketWeights};
 
-use super::fragments::Coordinates;
+use super::coordinates::Coordinates;
+use super::fragments::{Fragments, turned};
 use super::frame::Frame;
 use super::lanes::Lanes;
 use super::layout::{Layout, Normals};
 use super::record::Records;
-use crate::scene::Projection;
+use super::textures;
+use crate::number::nearest_f32;
+use crate::plan::Map;
+use crate::scene::{Coordinates as Set, Projection};
 
 /// Most lookups that a mapping asks for at a point.
 pub(super) const MOST_LOOKUPS: usize = 3;
@@ -121,7 +126,7 @@ impl<'a> MappedLanes<'a> {
         let wide = |of: fn(&Lookup) -> f64| found.map(|lookup| lookup.map_or(0.0, of));
         let scale = f64::from(footprint);
         let slope = |of: fn(&Lookup) -> f64| {
-            let lanes = wide(of).map(|slope| narrowed(slope * scale));
+            let lanes = wide(of).map(|slope| nearest_f32(slope * scale));
             f32x16::load_array(simd, lanes)
         };
         Some(MappedLookup {
@@ -138,7 +143,7 @@ impl<'a> MappedLanes<'a> {
                 wide(|l| l.dstp_dx.z).map(|slope| slope * scale),
                 wide(|l| l.dstp_dy.z).map(|slope| slope * scale),
             ],
-            weight: f32x16::load_array(simd, wide(|l| l.weight).map(narrowed)),
+            weight: f32x16::load_array(simd, wide(|l| l.weight).map(nearest_f32)),
         })
     }
 
@@ -187,10 +192,95 @@ impl<'a> MappedLanes<'a> {
     }
 }
 
-#[allow(
-    clippy::cast_possible_truncation,
-    reason = "slopes and weights in the precision of footprints"
-)]
-fn narrowed(value: f64) -> f32 {
-    value as f32
+impl<S: Simd> Fragments<'_, S> {
+    /// Where a lane looks, if the layout asks for it; else the origin.
+    pub(super) fn surface_point(&self, lane: usize) -> SurfacePoint {
+        let surface = self.mapped.as_ref().map(|mapped| &mapped.0);
+        surface.map_or(SurfacePoint::default(), |surface| surface.point(lane))
+    }
+
+    /// Colours of a map that is read where a mapping says, or from a solid.
+    #[inline(never)]
+    pub(super) fn blended(&self, map: &Map) -> [f32x16<S>; 4] {
+        let simd = self.simd;
+        let Set::Mapping(mapping) = map.coordinates else {
+            let at = self.map_coordinates(map);
+            return textures::sample_source(simd, self.frame, map, &at, &[[0.0; 16]; 3]);
+        };
+        let neutral = self.color(map.neutral);
+        let mut sum = [self.splat(0.0); 4];
+        let mut found = self.splat(0.0);
+        for k in 0..MOST_LOOKUPS {
+            let Some(lookup) = self.lookup(mapping, k) else {
+                break;
+            };
+            let at = lookup.coordinates.placed(simd, map.transform.as_ref());
+            let texel = textures::sample_source(simd, self.frame, map, &at, &lookup.p);
+            for (sum, texel) in sum.iter_mut().zip(texel) {
+                *sum += lookup
+                    .weight
+                    .simd_gt(0.0)
+                    .select(texel * lookup.weight, self.splat(0.0));
+            }
+            found += lookup.weight;
+        }
+        let found = found.simd_gt(0.0);
+        std::array::from_fn(|c| found.select(sum[c], neutral[c]))
+    }
+
+    pub(super) fn lookup(&self, mapping: usize, k: usize) -> Option<MappedLookup<S>> {
+        let (_, mappings) = &**self.mapped.as_ref()?;
+        let lanes = mappings.iter().find(|lanes| lanes.mapping == mapping)?;
+        lanes.lookup(self.simd, k, self.footprint)
+    }
+
+    /// Normals that a map bends in the frames of the mapping that gives it its coordinates: the mean over its lookups,
+    /// each in its own frame, and the variance that the map's own filter hides.
+    #[inline(never)]
+    pub(super) fn bent_by_mapping(
+        &self,
+        map: &Map,
+        scale: f32,
+        normal: Vec3x16<S>,
+    ) -> (Vec3x16<S>, f32x16<S>) {
+        let (simd, none) = (self.simd, self.splat(0.0));
+        let (mut sum, mut hidden) = (Vec3x16::grey(none), none);
+        let (Set::Mapping(mapping), Some(mapped)) = (map.coordinates, &self.mapped) else {
+            return (normal, none);
+        };
+        let (surface, mappings) = &**mapped;
+        let Some(lanes) = mappings.iter().find(|lanes| lanes.mapping == mapping) else {
+            return (normal, none);
+        };
+        for k in 0..MOST_LOOKUPS {
+            let Some(lookup) = lanes.lookup(simd, k, self.footprint) else {
+                break;
+            };
+            let at = lookup.coordinates.placed(simd, map.transform.as_ref());
+            let [x, y, z, _] = textures::sample_source(simd, self.frame, map, &at, &lookup.p);
+            let texel = Vec3x16::new(x, y, z);
+            let (tangent, handedness) = lanes.tangents(simd, k, surface, normal);
+            let frame = turned(TangentFrame::new(normal, tangent, handedness), map);
+            let weight = lookup.weight;
+            sum += frame.perturbed(decode_normal(simd, texel, scale)) * weight;
+            hidden += filtered_variance(simd, decode_normal(simd, texel, 1.0), scale) * weight;
+        }
+        (sum.normalize_or(normal), hidden)
+    }
+}
+
+/// What the mappings of a layout make of the points.
+#[inline(never)]
+pub(super) fn mapped<'a, S: Simd>(
+    frame: &'a Frame<'a>,
+    layout: &Layout,
+    lanes: &Lanes,
+    records: &Records,
+    weights: &PacketWeights<S>,
+) -> Box<(SurfaceLanes, Vec<MappedLanes<'a>>)> {
+    let surface = SurfaceLanes::new(frame, layout, lanes, records, weights);
+    let mappings = layout.mappings.iter();
+    let mappings = mappings.map(|&mapping| MappedLanes::new(frame, mapping, &surface));
+    let mappings = mappings.collect();
+    Box::new((surface, mappings))
 }

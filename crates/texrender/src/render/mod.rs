@@ -12,6 +12,7 @@
 //! colour, positions) has no row in its records and is asked about once a packet, not once a pixel.
 
 mod background;
+mod coordinates;
 mod film;
 mod fragments;
 mod frame;

@@ -7,7 +7,9 @@ use mipmap::LodRule;
 use sampler::solid::checker_2d;
 use texcoord::mapping::SurfacePoint;
 
-use super::fragments::{Coordinates, Fragments};
+use super::coordinates::Coordinates;
+use super::fragments::Fragments;
+use crate::number::nearest_f32;
 use crate::plan::Shown;
 use crate::settings::Show;
 
@@ -56,7 +58,7 @@ fn colour(shown: &Shown, place: &Place) -> Vec3 {
         Show::Checker => checker(place),
         Show::Coordinates => {
             let st = place.st - place.st.floor();
-            Vec3::new(narrowed(st.x), narrowed(st.y), 0.0)
+            Vec3::new(nearest_f32(st.x), nearest_f32(st.y), 0.0)
         }
         Show::MipLevel => {
             let (dx, dy) = (place.dx.as_vec2(), place.dy.as_vec2());
@@ -74,7 +76,7 @@ fn colour(shown: &Shown, place: &Place) -> Vec3 {
 /// told apart.
 fn checker(place: &Place) -> Vec3 {
     let width = (place.dx * place.dx + place.dy * place.dy).map(f64::sqrt);
-    let odd = narrowed(checker_2d(place.st * CELLS, width * CELLS));
+    let odd = nearest_f32(checker_2d(place.st * CELLS, width * CELLS));
     let st = (place.st - place.st.floor()).as_vec2();
     let tint = Vec3::new(0.7 + 0.3 * st.x, 0.7 + 0.3 * st.y, 0.85);
     Vec3::splat(0.13).lerp(Vec3::splat(0.8), odd) * tint
@@ -174,15 +176,7 @@ fn distortion_colour(stretch: &Stretch) -> Vec3 {
 /// Between the colours of a ramp; `at`: 0 the first, one a step.
 fn along(ramp: &[Vec3], at: f64) -> Vec3 {
     let last = ramp.len() - 1;
-    let at = narrowed(at).clamp(0.0, last as f32);
+    let at = nearest_f32(at).clamp(0.0, last as f32);
     let step = (0..last).rev().find(|&k| k as f32 <= at).unwrap_or(0);
     ramp[step].lerp(ramp[step + 1], at - step as f32)
-}
-
-#[allow(
-    clippy::cast_possible_truncation,
-    reason = "a colour, in the precision of colours"
-)]
-fn narrowed(value: f64) -> f32 {
-    value as f32
 }

@@ -7,7 +7,7 @@ use mipmap::packet::PacketFootprint;
 use mipmap::{Footprint, LodRule, Pyramid};
 use sampler::solid::box_width;
 
-use super::fragments::Coordinates;
+use super::coordinates::Coordinates;
 use super::frame::Frame;
 use crate::plan::{ImageMap, Map, MapReading, MapSource, TextureRole};
 use crate::scene::Texture;

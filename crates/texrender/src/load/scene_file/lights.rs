@@ -5,10 +5,11 @@ use shading::{LightKind, PunctualLight};
 
 use super::table::Table;
 use crate::error::Error;
+use crate::number::nearest_f32;
 
 /// Reads a light.
 pub(super) fn light(table: &Table<'_>) -> Result<PunctualLight, Error> {
-    let radians = |key: &str| narrowed(table.sure_number(key).to_radians());
+    let radians = |key: &str| nearest_f32(table.sure_number(key).to_radians());
     let kind = match table.tag() {
         "point" => LightKind::Point,
         "spot" => {
@@ -32,14 +33,9 @@ pub(super) fn light(table: &Table<'_>) -> Result<PunctualLight, Error> {
     let color = table.color("color").unwrap_or(Vec3::ONE);
     Ok(PunctualLight {
         kind,
-        intensity: color * narrowed(table.sure_number("intensity")),
+        intensity: color * nearest_f32(table.sure_number("intensity")),
         position: table.vec3("position").unwrap_or_default().as_vec3(),
         direction: direction.as_vec3(),
-        range: table.number("range").map(narrowed),
+        range: table.number("range").map(nearest_f32),
     })
-}
-
-#[allow(clippy::cast_possible_truncation, reason = "light is computed in f32")]
-fn narrowed(value: f64) -> f32 {
-    value as f32
 }

@@ -6,6 +6,7 @@ use texcoord::TextureTransform;
 use super::read::{MappedTo, Reader};
 use super::table::Table;
 use crate::error::Error;
+use crate::number::nearest_f32;
 use crate::scene::{
     AlphaMode, Material, MaterialModel, NormalTexture, OcclusionTexture, TextureUse,
 };
@@ -18,7 +19,7 @@ pub(super) fn material(
     coordinates: Option<MappedTo>,
 ) -> Result<Material, Error> {
     let map = |key: &str| texture_use(reader, table, key, coordinates);
-    let unit = |key: &str| narrowed(table.sure_number(key));
+    let unit = |key: &str| nearest_f32(table.sure_number(key));
     let color = |key: &str, default: Vec3| table.color(key).unwrap_or(default);
     let model = match table.tag() {
         "unlit" => MaterialModel::Unlit,
@@ -38,7 +39,7 @@ pub(super) fn material(
             specular_color_map: None,
         },
     };
-    let strength = narrowed(table.number("emissive_strength").unwrap_or(1.0));
+    let strength = nearest_f32(table.number("emissive_strength").unwrap_or(1.0));
     Ok(Material {
         name: name.to_owned(),
         model,
@@ -85,7 +86,7 @@ fn texture_use(
     let pair = |key: &str| map.vec2(key).unwrap_or_default().as_vec2();
     let transform = TextureTransform {
         offset: pair("offset"),
-        rotation: narrowed(map.sure_number("rotation").to_radians()),
+        rotation: nearest_f32(map.sure_number("rotation").to_radians()),
         scale: pair("scale"),
     };
     let mapped = match map.text("mapping") {
@@ -98,12 +99,4 @@ fn texture_use(
         map.count("set") as usize,
         transform,
     )))
-}
-
-#[allow(
-    clippy::cast_possible_truncation,
-    reason = "factors in the precision of colours"
-)]
-fn narrowed(value: f64) -> f32 {
-    value as f32
 }

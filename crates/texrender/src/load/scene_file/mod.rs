@@ -14,6 +14,7 @@ mod schema;
 mod shapes;
 mod table;
 mod textures;
+mod value;
 mod view;
 
 use std::path::{Path, PathBuf};

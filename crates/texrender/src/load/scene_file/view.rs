@@ -6,6 +6,7 @@ use crate::error::Error;
 use crate::finish::FinishOptions;
 use crate::load::LoadOptions;
 use crate::load::uri::local_file;
+use crate::number::nearest_f32;
 use crate::scene::Scene;
 use crate::settings::{EnvironmentSource, Orbit, Settings, Show, View};
 
@@ -62,7 +63,7 @@ fn output(document: &mut Document, table: &Table<'_>, options: &LoadOptions) -> 
     let tonemap = parse("tonemap").parse();
     document.finish.tonemap =
         tonemap.map_err(|detail: String| table.error_at("tonemap", detail))?;
-    document.finish.exposure = narrowed(table.sure_number("exposure"));
+    document.finish.exposure = nearest_f32(table.sure_number("exposure"));
     let shown = |show: &Show| Some(show.name()) == table.text("show");
     settings.show = Show::ALL.into_iter().find(shown);
     Ok(())
@@ -118,7 +119,7 @@ fn environment(
         (None, Some("none")) => EnvironmentSource::None,
         _ => EnvironmentSource::Studio,
     };
-    settings.environment_rotation = narrowed(table.sure_number("rotation"));
+    settings.environment_rotation = nearest_f32(table.sure_number("rotation"));
     let background = table.text("background").unwrap_or_default().parse();
     settings.background =
         background.map_err(|detail: String| table.error_at("background", detail))?;
@@ -132,9 +133,4 @@ fn environment(
 )]
 fn side(value: f64) -> u32 {
     value as u32
-}
-
-#[allow(clippy::cast_possible_truncation, reason = "settings are f32")]
-fn narrowed(value: f64) -> f32 {
-    value as f32
 }
