@@ -25,7 +25,7 @@ const DENSITY_PRECISION: f64 = 1.004;
 const COARSE_PRECISION: f64 = 1.02;
 
 /// Charts above which one way of packing is tried, and a search starts where the last one of that size ended.
-pub(crate) const MANY_CHARTS: usize = 1000;
+pub(crate) const MANY_CHARTS: usize = 256;
 
 /// Added to half the gap, in texels: more than the rounding of coordinates, so that the gap is never a texel short.
 pub(crate) const MARGIN_SLACK: f64 = 1.0 / 64.0;
@@ -198,8 +198,8 @@ impl<'a> Packer<'a> {
         let mut images: Vec<Occupancy> = Vec::new();
         let mut longest_run = None;
         let mut placements = vec![None; self.outlines.len()];
-        // For each size of mask the image and row where the last one went.
-        let mut hints: BTreeMap<(usize, usize), (usize, usize)> = BTreeMap::new();
+        // For each class of masks the image and row where the last one went.
+        let mut hints: BTreeMap<(u32, u32), (usize, usize)> = BTreeMap::new();
         for &chart in &self.order {
             let turned = self.turned_masks(chart, density, strategy);
             let first = &turned.first()?.mask;
@@ -208,7 +208,7 @@ impl<'a> Packer<'a> {
                 let runs = turned.iter().map(|one| one.mask.longest_run());
                 runs.max().unwrap_or(1)
             });
-            let key = (first.width, first.height());
+            let key = size_class(first);
             let hint = match hints.get(&key) {
                 Some(&hint) if self.order.len() > MANY_CHARTS => hint,
                 _ => (0, 0),
@@ -328,4 +328,10 @@ fn best_place(
         }
     }
     best.map(|(_, k, place)| (k, place))
+}
+
+/// Masks of one class are searched from where the last of them went: sides in steps of √2.
+fn size_class(mask: &Mask) -> (u32, u32) {
+    let class = |side: usize| (side * side).max(1).ilog2();
+    (class(mask.width), class(mask.height()))
 }

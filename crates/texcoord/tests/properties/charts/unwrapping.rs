@@ -6,8 +6,8 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use glam::{Vec2, Vec3};
 use proptest::prelude::*;
 use texcoord::charts::{
-    Atlas, AtlasSize, Density, Distortion, Effort, PackOptions, Progress, Surface, UnwrapOptions,
-    Weld, in_order, unwrap,
+    Atlas, AtlasSize, Density, Distortion, Effort, PackOptions, Progress, Segmentation, Surface,
+    UnwrapOptions, Weld, flatten, in_order, unwrap,
 };
 
 use super::meshes;
@@ -123,6 +123,43 @@ fn hard_meshes_by_name() {
             "{name}: {}",
             figures.l2_stretch
         );
+    }
+}
+
+#[test]
+fn small_charts_join_their_neighbours() {
+    let (mut positions, mut triangles) = (Vec::new(), Vec::new());
+    for patch in texcoord::teapot::patches() {
+        let grid = patch.tessellate(8);
+        let base = positions.len() as u32;
+        positions.extend(grid.positions);
+        triangles.extend(grid.triangles.iter().map(|t| t.map(|v| v + base)));
+    }
+    let surface = Surface::of(&positions, &triangles, Weld::ByPosition).unwrap();
+    let options = UnwrapOptions {
+        min_utilisation: 0.0,
+        ..UnwrapOptions::default()
+    };
+    let alone: usize = Segmentation::of(&surface)
+        .charts
+        .iter()
+        .map(|chart| flatten(&surface, chart, &options.flatten).len())
+        .sum();
+    let atlas = unwrapped(&(positions, triangles), &options);
+    assert!(
+        atlas.images.len() + 5 <= alone,
+        "{} of {alone}",
+        atlas.images.len()
+    );
+}
+
+#[test]
+fn a_hub_and_needles_end_in_bounded_time() {
+    // 3000 needles around each pole; systems without an order for hubs would be dense.
+    let can = meshes::torus(3000, 3, 0.3);
+    let fan = meshes::fan(3000, 0.0);
+    for mesh in [can, fan] {
+        assert_sound(&mesh, &unwrapped(&mesh, &small()), 2);
     }
 }
 
