@@ -9,7 +9,8 @@
 
 use glam::DVec2;
 
-use super::cholesky::{Complex, Matrix};
+use super::cholesky::Matrix;
+use super::coefficient::Complex;
 use super::disk::Disk;
 use super::ordering::nested_dissection;
 use super::surface::{NONE, id};
