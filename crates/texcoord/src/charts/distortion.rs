@@ -96,7 +96,7 @@ impl Distortion {
 /// Nothing for a triangle without area or with a corner that is not finite.
 ///
 /// # Accuracy
-/// Relative error below 10⁻¹⁰ of σ₁ for triangles no thinner than 1:1000.
+/// Within 10⁻⁶ of σ₁ for triangles no thinner than 1:100.
 /// # Examples
 /// ```
 /// use glam::{Vec2, Vec3};

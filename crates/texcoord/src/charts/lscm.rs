@@ -22,7 +22,7 @@ use super::surface::{NONE, id};
 /// cannot be solved (faces too thin for f64).
 ///
 /// # Accuracy
-/// A planar disk to 10⁻⁶ of its size when its triangles are no thinner than 1:100.
+/// The edges of a planar disk to 2·10⁻⁶ of their lengths, when its triangles are no thinner than 1:100.
 /// # Source
 /// Lévy, Petitjean, Ray & Maillot 2002, "Least Squares Conformal Maps for Automatic Texture Atlas Generation", 2.
 #[must_use]

@@ -86,6 +86,10 @@ fn hard_meshes_by_name() {
     let tiny: Vec<Vec3> = square.iter().map(|&p| p * 1e-38).collect();
     let far: Vec<Vec3> = square.iter().map(|&p| p + Vec3::splat(1e6)).collect();
     let halves = vec![[0, 1, 2], [0, 2, 3]];
+    let scales = [1e38, 1e20, 1.0, 1e-10, 1e-30, 1e-38];
+    let mixed: Vec<Vec3> = scales.iter().flat_map(|&s| square.map(|p| p * s)).collect();
+    let mixed_faces =
+        (0..6).flat_map(|k| [[4 * k, 4 * k + 1, 4 * k + 2], [4 * k, 4 * k + 2, 4 * k + 3]]);
     let bow_tie = vec![[0, 1, 2], [0, 3, 4]];
     let meshes = [
         ("empty", (vec![], vec![])),
@@ -95,6 +99,7 @@ fn hard_meshes_by_name() {
         ("huge", (huge, halves.clone())),
         ("tiny", (tiny, halves.clone())),
         ("far away", (far, halves)),
+        ("mixed scales", (mixed, mixed_faces.collect())),
         (
             "bow tie",
             (
