@@ -19,7 +19,7 @@ use super::packer::Packer;
 pub const MAX_ATLAS_SIZE: u32 = 16384;
 
 /// Largest number of images.
-const MAX_IMAGES: u32 = 256;
+pub(crate) const MAX_IMAGES: u32 = 256;
 
 /// Share of the image that padding may take where the size is chosen.
 const AUTO_PADDING_SHARE: f64 = 0.03;

@@ -6,7 +6,7 @@ use super::atlas::{Atlas, assemble};
 use super::flatten::{FlatChart, FlattenOptions, flatten, flatten_whole};
 use super::for_each::{ForEach, results};
 use super::merge::pairs_to_merge;
-use super::pack::{AtlasSize, Effort, MAX_ATLAS_SIZE, PackOptions, Packing, pack};
+use super::pack::{AtlasSize, Effort, MAX_ATLAS_SIZE, MAX_IMAGES, PackOptions, Packing, pack};
 use super::packer::MANY_CHARTS;
 use super::segment::{Segmentation, divide};
 use super::surface::{Surface, Weld};
@@ -92,8 +92,8 @@ pub enum Progress {
 /// surface: its signed area in (s, t), t down, is negative, so tangents of these coordinates have handedness +1 (glTF's
 /// bitangent is cross(normal, tangent)·w).
 ///
-/// Faulty faces ([`FaceFault`](super::FaceFault)) belong to no chart. A duplicate has the coordinates of the face it repeats; all others
-/// are at (0, 0).
+/// Faulty faces ([`FaceFault`](super::FaceFault)) belong to no chart. A duplicate has the coordinates of the face it
+/// repeats; all others are at (0, 0).
 ///
 /// The result depends on neither `for_each` nor the machine.
 ///
@@ -232,6 +232,12 @@ impl Work<'_> {
         let Density::TexelsPerUnit(density) = pack.density else {
             return;
         };
+        // No number of parts helps where all images together are too small.
+        let area: f64 = charts.iter().map(FlatChart::area).sum();
+        let side = f64::from(size) * f64::from(MAX_IMAGES).sqrt();
+        if area.sqrt() * density > side {
+            return;
+        }
         // A little room for cells that do not begin where a chart does.
         let room = 0.98 * f64::from(size) - f64::from(pack.gap()) - 4.0;
         loop {

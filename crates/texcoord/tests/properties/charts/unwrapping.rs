@@ -6,8 +6,8 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use glam::{Vec2, Vec3};
 use proptest::prelude::*;
 use texcoord::charts::{
-    Atlas, AtlasSize, Density, Distortion, Effort, PackOptions, Progress, Segmentation, Surface,
-    UnwrapOptions, Weld, flatten, in_order, unwrap,
+    Atlas, AtlasSize, ChartError, Density, Distortion, Effort, PackOptions, Progress, Segmentation,
+    Surface, UnwrapOptions, Weld, flatten, in_order, unwrap,
 };
 
 use super::meshes;
@@ -277,6 +277,20 @@ fn progress_counts_up_to_all_faces() {
         of: 1280
     }));
     assert!(matches!(seen.last(), Some(Progress::Packing { .. })));
+}
+
+#[test]
+fn a_density_beyond_all_images_is_an_error() {
+    let mesh = meshes::icosphere(3);
+    for density in [1e5, 1e30] {
+        let mut options = small();
+        options.pack.density = Density::TexelsPerUnit(density);
+        let unwrapped = unwrap(&mesh.0, &mesh.1, &options, &in_order, &|_| {});
+        assert!(
+            matches!(unwrapped, Err(ChartError::NoRoom { .. })),
+            "{density}"
+        );
+    }
 }
 
 #[test]
