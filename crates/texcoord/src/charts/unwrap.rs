@@ -18,10 +18,7 @@ const MERGE_ROUNDS: usize = 3;
 /// Rounds in which the charts that waste most room are divided.
 const DIVIDE_ROUNDS: usize = 12;
 
-/// Utilisation missing from which charts are divided into more than two parts.
-const FAR_FROM_GOAL: f64 = 0.045;
-
-/// Share of the whole area that a part should then have.
+/// Share of the whole area that a part should have where charts are divided at once.
 const PART_SHARE: f64 = 1.0 / 24.0;
 
 /// Utilisation that divided charts must add to be preferred.
@@ -126,8 +123,8 @@ pub fn unwrap(
     };
     let charts = work.flatten_all(&segmentation.charts);
     let charts = work.merge_small(charts);
-    let (charts, packing) = work.pack_well(charts)?;
-    Ok(assemble(&surface, &charts, packing))
+    let packed = work.pack_well(charts)?;
+    Ok(assemble(&surface, &packed.charts, packed.packing))
 }
 
 struct Work<'a> {
@@ -135,6 +132,13 @@ struct Work<'a> {
     options: &'a UnwrapOptions,
     for_each: ForEach<'a>,
     progress: &'a (dyn Fn(Progress) + Sync),
+}
+
+/// Charts and where they lie.
+#[derive(Clone)]
+struct Packed {
+    charts: Vec<FlatChart>,
+    packing: Packing,
 }
 
 impl Work<'_> {
@@ -180,44 +184,71 @@ impl Work<'_> {
         charts
     }
 
-    /// Packs, and divides wasteful charts until the image is used enough.
-    fn pack_well(
-        &self,
-        mut charts: Vec<FlatChart>,
-    ) -> Result<(Vec<FlatChart>, Packing), ChartError> {
+    /// Packs; where the image is not used enough, divides wasteful charts, by two plans: at once into about as many
+    /// parts as pack well, and step by step into halves, which is taken where it needs far fewer charts.
+    fn pack_well(&self, mut charts: Vec<FlatChart>) -> Result<Packed, ChartError> {
         self.divide_too_large(&mut charts);
-        let mut packing = self.pack_to_goal(&charts)?;
-        let mut best = (charts.clone(), packing.clone());
+        let whole = Packed {
+            packing: self.pack_to_goal(&charts)?,
+            charts,
+        };
+        if self.is_enough(&whole.packing) {
+            return Ok(whole);
+        }
+        let at_once = self.divide_to_goal(whole.clone(), PART_SHARE, usize::MAX)?;
+        let found = self.is_enough(&at_once.packing);
+        // Time for halving is well spent only where it may save a quarter of the charts.
+        let limit = if found {
+            at_once.charts.len() * 3 / 4
+        } else {
+            usize::MAX
+        };
+        let by_halves = self.divide_to_goal(whole, 1.0, limit)?;
+        let better = if found {
+            self.is_enough(&by_halves.packing)
+        } else {
+            by_halves.packing.utilisation > at_once.packing.utilisation
+        };
+        Ok(if better { by_halves } else { at_once })
+    }
+
+    /// Divides the charts that waste most, round by round, until the image is used enough, there are `limit` charts, or
+    /// it does not pay. Returns what used the image best.
+    fn divide_to_goal(
+        &self,
+        whole: Packed,
+        share: f64,
+        limit: usize,
+    ) -> Result<Packed, ChartError> {
+        let mut charts = whole.charts.clone();
+        let mut best = whole;
         let mut idle = 0;
         for _ in 0..DIVIDE_ROUNDS {
             let wasteful = wasteful_charts(&charts);
-            if self.is_enough(&packing) || wasteful.is_empty() {
+            self.divide(&mut charts, &wasteful, share);
+            if wasteful.is_empty() || charts.len() >= limit {
                 break;
             }
-            let missing = self.options.min_utilisation - packing.utilisation;
-            let share = if missing > FAR_FROM_GOAL {
-                PART_SHARE
-            } else {
-                1.0
-            };
-            self.divide(&mut charts, &wasteful, share);
-            packing = match self.pack_to_goal(&charts) {
+            let packing = match self.pack_to_goal(&charts) {
                 Ok(packing) => packing,
                 // More charts need more padding than there is room for.
                 Err(_) => break,
             };
             idle += 1;
-            if packing.utilisation > best.1.utilisation + MIN_GAIN {
-                best = (charts.clone(), packing.clone());
+            if packing.utilisation > best.packing.utilisation + MIN_GAIN {
+                best = Packed {
+                    charts: charts.clone(),
+                    packing,
+                };
                 idle = 0;
             }
-            if idle == MAX_IDLE_ROUNDS {
+            if idle == MAX_IDLE_ROUNDS || self.is_enough(&best.packing) {
                 break;
             }
         }
-        let hopeless = best.1.utilisation + THOROUGH_GAIN < self.options.min_utilisation;
-        if hopeless && !self.is_enough(&best.1) && self.can_improve(&best.0) {
-            best.1 = pack(&best.0, &self.options.pack, self.for_each)?;
+        let hopeless = best.packing.utilisation + THOROUGH_GAIN < self.options.min_utilisation;
+        if hopeless && self.can_improve(&best.charts) {
+            best.packing = pack(&best.charts, &self.options.pack, self.for_each)?;
         }
         Ok(best)
     }
