@@ -183,6 +183,18 @@ pub fn pack(
     }
 }
 
+/// Puts more effort into a quick packing of charts into one image.
+pub(crate) fn improve(
+    charts: &[FlatChart],
+    options: &PackOptions,
+    quick: Packing,
+    for_each: ForEach<'_>,
+) -> Packing {
+    let outlines: Vec<Outline> = charts.iter().map(Outline::of).collect();
+    let area: f64 = outlines.iter().map(|o| o.area).sum();
+    Packer::new(&outlines, quick.size, options).improve(quick, area, for_each)
+}
+
 impl PackOptions {
     /// The side asked for, or the power of two that holds `side` texels at the usual utilisation.
     fn size_for(&self, outlines: &[Outline], side: f64) -> Result<u32, ChartError> {

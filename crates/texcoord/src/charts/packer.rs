@@ -118,20 +118,28 @@ impl<'a> Packer<'a> {
     pub(crate) fn fit(&self, area: f64, for_each: ForEach<'_>) -> Result<Packing, ChartError> {
         let first = self.densest(STRATEGIES[0], area, None);
         let (density, placements) = first.ok_or_else(|| self.no_room())?;
-        let others = match self.effort {
-            Effort::Thorough if self.outlines.len() <= MANY_CHARTS => &STRATEGIES[1..],
-            _ => &[],
-        };
-        let improved = results(for_each, others.len(), &|k| {
-            self.densest(others[k], area, Some(density))
+        let packing = self.packing(density, placements, area);
+        Ok(match self.effort {
+            Effort::Thorough if self.outlines.len() <= MANY_CHARTS => {
+                self.improve(packing, area, for_each)
+            }
+            _ => packing,
+        })
+    }
+
+    /// The best of a packing by the first strategy and what the others make of the charts.
+    pub(crate) fn improve(&self, first: Packing, area: f64, for_each: ForEach<'_>) -> Packing {
+        let others = &STRATEGIES[1..];
+        let found = results(for_each, others.len(), &|k| {
+            self.densest(others[k], area, Some(first.density))
         });
-        let mut best = (density, placements);
-        for other in improved.into_iter().flatten() {
-            if other.0 > best.0 {
-                best = other;
+        let mut best = first;
+        for (density, placements) in found.into_iter().flatten() {
+            if density > best.density {
+                best = self.packing(density, placements, area);
             }
         }
-        Ok(self.packing(best.0, best.1, area))
+        best
     }
 
     /// All charts at a density in at most `limit` images, each chart in the first that has room.

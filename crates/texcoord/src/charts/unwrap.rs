@@ -6,7 +6,9 @@ use super::atlas::{Atlas, assemble};
 use super::flatten::{FlatChart, FlattenOptions, flatten, flatten_whole};
 use super::for_each::{ForEach, results};
 use super::merge::pairs_to_merge;
-use super::pack::{AtlasSize, Effort, MAX_ATLAS_SIZE, MAX_IMAGES, PackOptions, Packing, pack};
+use super::pack::{
+    AtlasSize, Effort, MAX_ATLAS_SIZE, MAX_IMAGES, PackOptions, Packing, improve, pack,
+};
 use super::packer::MANY_CHARTS;
 use super::segment::{Segmentation, divide};
 use super::surface::{Surface, Weld};
@@ -195,7 +197,7 @@ impl Work<'_> {
         if self.is_enough(&whole.packing) {
             return Ok(whole);
         }
-        let at_once = self.divide_to_goal(whole.clone(), PART_SHARE, usize::MAX)?;
+        let at_once = self.divide_to_goal(whole.clone(), PART_SHARE, usize::MAX);
         let found = self.is_enough(&at_once.packing);
         // Time for halving is well spent only where it may save a quarter of the charts.
         let limit = if found {
@@ -203,7 +205,7 @@ impl Work<'_> {
         } else {
             usize::MAX
         };
-        let by_halves = self.divide_to_goal(whole, 1.0, limit)?;
+        let by_halves = self.divide_to_goal(whole, 1.0, limit);
         let better = if found {
             self.is_enough(&by_halves.packing)
         } else {
@@ -214,12 +216,7 @@ impl Work<'_> {
 
     /// Divides the charts that waste most, round by round, until the image is used enough, there are `limit` charts, or
     /// it does not pay. Returns what used the image best.
-    fn divide_to_goal(
-        &self,
-        whole: Packed,
-        share: f64,
-        limit: usize,
-    ) -> Result<Packed, ChartError> {
+    fn divide_to_goal(&self, whole: Packed, share: f64, limit: usize) -> Packed {
         let mut charts = whole.charts.clone();
         let mut best = whole;
         let mut idle = 0;
@@ -248,9 +245,10 @@ impl Work<'_> {
         }
         let hopeless = best.packing.utilisation + THOROUGH_GAIN < self.options.min_utilisation;
         if hopeless && self.can_improve(&best.charts) {
-            best.packing = pack(&best.charts, &self.options.pack, self.for_each)?;
+            let options = &self.options.pack;
+            best.packing = improve(&best.charts, options, best.packing, self.for_each);
         }
-        Ok(best)
+        best
     }
 
     /// Divides charts until none is wider than an image at the density asked for, as far as they have faces.
@@ -326,7 +324,7 @@ impl Work<'_> {
         if hopeless || !self.can_improve(charts) {
             return Ok(packing);
         }
-        pack(charts, &self.options.pack, self.for_each)
+        Ok(improve(charts, &self.options.pack, packing, self.for_each))
     }
 }
 
