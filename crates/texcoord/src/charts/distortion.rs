@@ -3,9 +3,11 @@
 //! σ₁ ≥ σ₂ are the singular values of the map from a triangle to the image, once all images are scaled so that their
 //! triangles have the area of the surface's; 1 and 1 for an isometry.
 
+use std::collections::BTreeSet;
+
 use glam::{DVec2, Vec2, Vec3};
 
-use super::overlap::{Box2, Lattice, area, to_lattice, triangles_overlap, visit_close_pairs};
+use super::overlap::{Lattice, area, to_lattice, triangles_overlap, visit_close_pairs};
 use super::region::{after, find, join};
 use super::surface::{NONE, Surface, id};
 
@@ -96,7 +98,7 @@ impl Distortion {
 /// Nothing for a triangle without area or with a corner that is not finite.
 ///
 /// # Accuracy
-/// Relative error below 10⁻¹⁰ of σ₁ for triangles no thinner than 1:1000.
+/// Within 10⁻⁶ of σ₁ for triangles no thinner than 1:100.
 /// # Examples
 /// ```
 /// use glam::{Vec2, Vec3};
@@ -244,19 +246,16 @@ impl<'a> Measured<'a> {
     }
 
     fn overlaps(&self) -> usize {
-        let boxes: Vec<Box2> = self
-            .faces
-            .iter()
-            .map(|f| Box2::around(&f.corners))
-            .collect();
-        let mut count = 0;
-        visit_close_pairs(&boxes, &mut |i, j| {
-            let (a, b) = (&self.faces[i], &self.faces[j]);
-            let same = self.images[a.face as usize] == self.images[b.face as usize];
-            count += usize::from(same && triangles_overlap(a.corners, b.corners));
-            count < MAX_COUNTED_OVERLAPS
+        let corners: Vec<[Lattice; 3]> = self.faces.iter().map(|f| f.corners).collect();
+        let mut found = BTreeSet::new();
+        visit_close_pairs(&corners, &mut |i, j| {
+            let image = |k: usize| self.images[self.faces[k].face as usize];
+            if image(i) == image(j) && triangles_overlap(corners[i], corners[j]) {
+                found.insert((i.min(j), i.max(j)));
+            }
+            found.len() < MAX_COUNTED_OVERLAPS
         });
-        count
+        found.len()
     }
 
     fn seam_length(&self) -> f64 {

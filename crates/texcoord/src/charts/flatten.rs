@@ -18,7 +18,8 @@ const MAX_PARTS: usize = 6;
 /// What a chart must keep to.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FlattenOptions {
-    /// Largest L² stretch of a chart, > 1: Sander's, 1 for an isometry. More lets charts be larger and fewer.
+    /// Largest L² stretch of a chart: Sander's, 1 for an isometry. More lets charts be larger and fewer; 1 or less
+    /// leaves each triangle alone, NaN allows any.
     pub max_stretch: f64,
 }
 

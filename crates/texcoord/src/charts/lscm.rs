@@ -9,7 +9,8 @@
 
 use glam::DVec2;
 
-use super::cholesky::{Complex, Matrix};
+use super::cholesky::Matrix;
+use super::coefficient::Complex;
 use super::disk::Disk;
 use super::ordering::nested_dissection;
 use super::surface::{NONE, id};
@@ -21,7 +22,7 @@ use super::surface::{NONE, id};
 /// cannot be solved (faces too thin for f64).
 ///
 /// # Accuracy
-/// A planar disk to 10⁻⁶ of its size when its triangles are no thinner than 1:100.
+/// The edges of a planar disk to 2·10⁻⁶ of their lengths, when its triangles are no thinner than 1:100.
 /// # Source
 /// Lévy, Petitjean, Ray & Maillot 2002, "Least Squares Conformal Maps for Automatic Texture Atlas Generation", 2.
 #[must_use]

@@ -35,10 +35,12 @@
 
 mod atlas;
 mod cholesky;
+mod coefficient;
 mod cut;
 mod dilate;
 mod disk;
 mod distortion;
+mod elimination;
 mod error;
 mod flatten;
 mod for_each;

@@ -6,7 +6,7 @@ use glam::DVec2;
 /// areas 61, exact in i64. Coordinates in 0..=1 that are multiples of 2⁻²⁴ lie on the lattice.
 const STEPS: f64 = (1u64 << 28) as f64;
 
-/// Boxes compared directly instead of being divided further.
+/// Shapes compared directly instead of being divided further.
 const LEAF: usize = 12;
 
 /// A point of the lattice.
@@ -62,9 +62,8 @@ pub(crate) fn polygon_meets_itself(corners: &[Lattice]) -> bool {
     let edges: Vec<[Lattice; 2]> = (0..corners.len())
         .map(|k| [corners[k], corners[(k + 1) % corners.len()]])
         .collect();
-    let boxes: Vec<Box2> = edges.iter().map(|e| Box2::around(e)).collect();
     let mut meets = false;
-    visit_close_pairs(&boxes, &mut |i, j| {
+    visit_close_pairs(&edges, &mut |i, j| {
         let (i, j) = (i.min(j), i.max(j));
         meets |= if j == i + 1 || (i == 0 && j + 1 == edges.len()) {
             let shared = if j == i + 1 { edges[j][0] } else { edges[i][0] };
@@ -100,13 +99,13 @@ fn segments_meet([a, b]: [Lattice; 2], [c, d]: [Lattice; 2]) -> bool {
 
 /// An upright box, borders included.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Box2 {
+struct Box2 {
     low: Lattice,
     high: Lattice,
 }
 
 impl Box2 {
-    pub(crate) fn around(points: &[Lattice]) -> Self {
+    fn around(points: &[Lattice]) -> Self {
         let mut around = Self {
             low: [i64::MAX; 2],
             high: [i64::MIN; 2],
@@ -121,75 +120,107 @@ impl Box2 {
     fn touches(&self, other: &Self) -> bool {
         (0..2).all(|k| self.low[k] <= other.high[k] && other.low[k] <= self.high[k])
     }
+
+    fn corners(&self) -> [Lattice; 4] {
+        let ([x, y], [u, v]) = (self.low, self.high);
+        [[x, y], [u, y], [u, v], [x, v]]
+    }
 }
 
-/// Calls `visit` once for each pair of boxes that touch, until it says false.
+/// Triangles or segments among which pairs are sought.
+struct Shapes<'a, const N: usize> {
+    shapes: &'a [[Lattice; N]],
+    boxes: Vec<Box2>,
+}
+
+/// Calls `visit` at least once for each pair of shapes (triangles or segments) whose boxes and selves come close, until
+/// it says false.
 ///
-/// The plane is halved at the median of the boxes' middles, across the side along which these spread more; boxes on
-/// the line go to both halves, and a pair is reported where the lower corner of its common part lies. Boxes that
-/// mostly cross the line are compared one by one: quadratic then, near n·log n for a map whose triangles lie side by side.
-pub(crate) fn visit_close_pairs(boxes: &[Box2], visit: &mut dyn FnMut(usize, usize) -> bool) {
-    let all: Vec<usize> = (0..boxes.len()).collect();
-    let everywhere = Box2 {
-        low: [i64::MIN; 2],
-        high: [i64::MAX; 2],
+/// The plane is halved at the median of the boxes' middles, across the side along which these spread more; shapes that
+/// reach into both halves go to both. Where too many do, they are compared one by one: near n·log n for a map whose
+/// triangles lie side by side, quadratic for needles that meet in a point.
+pub(crate) fn visit_close_pairs<const N: usize>(
+    shapes: &[[Lattice; N]],
+    visit: &mut dyn FnMut(usize, usize) -> bool,
+) {
+    let found = Shapes {
+        shapes,
+        boxes: shapes.iter().map(|s| Box2::around(s)).collect(),
     };
-    let mut open = vec![(all, everywhere)];
+    let all: Vec<usize> = (0..shapes.len()).collect();
+    let mut open = vec![(all, Box2::around(shapes.as_flattened()))];
     while let Some((part, cell)) = open.pop() {
-        if let Some(halves) = halve(boxes, &part, cell) {
+        if let Some(halves) = found.halve(&part, cell) {
             open.extend(halves);
-        } else if !compare_all(boxes, &part, cell, visit) {
+        } else if !found.compare_all(&part, visit) {
             return;
         }
     }
 }
 
-/// Two halves of a cell with the boxes that reach into each, or nothing when dividing gains too little.
-fn halve(boxes: &[Box2], part: &[usize], cell: Box2) -> Option<[(Vec<usize>, Box2); 2]> {
-    if part.len() <= LEAF {
-        return None;
+impl<const N: usize> Shapes<'_, N> {
+    /// Two halves of a cell with the shapes that reach into each, or nothing when dividing gains too little.
+    fn halve(&self, part: &[usize], cell: Box2) -> Option<[(Vec<usize>, Box2); 2]> {
+        if part.len() <= LEAF {
+            return None;
+        }
+        // Of a shape only what lies in the cell counts.
+        let middle = |s: usize, k: usize| {
+            let (low, high) = (self.boxes[s].low[k], self.boxes[s].high[k]);
+            low.max(cell.low[k]) / 2 + high.min(cell.high[k]) / 2
+        };
+        let spread = |k: usize| {
+            let middles = part.iter().map(|&s| middle(s, k));
+            let (low, high) = middles.fold((i64::MAX, i64::MIN), |(l, h), m| (l.min(m), h.max(m)));
+            high - low
+        };
+        let axis = usize::from(spread(1) > spread(0));
+        let along = |axis: usize| {
+            let mut middles: Vec<i64> = part.iter().map(|&s| middle(s, axis)).collect();
+            let half = middles.len() / 2;
+            let line = *middles.select_nth_unstable(half).1;
+            let (mut below, mut above) = (cell, cell);
+            below.high[axis] = line;
+            above.low[axis] = line;
+            let inside = |cell: Box2| -> Vec<usize> {
+                let reaching = part.iter().copied().filter(|&s| self.reaches(s, &cell));
+                reaching.collect()
+            };
+            let (lower, upper) = (inside(below), inside(above));
+            let (sum, most) = (lower.len() + upper.len(), lower.len().max(upper.len()));
+            let gains = 4 * sum <= 5 * part.len() && 4 * most <= 3 * part.len();
+            gains.then_some([(lower, below), (upper, above)])
+        };
+        along(axis).or_else(|| along(1 - axis))
     }
-    let middle = |b: usize, k: usize| boxes[b].low[k] / 2 + boxes[b].high[k] / 2;
-    let spread = |k: usize| {
-        let middles = part.iter().map(|&b| middle(b, k));
-        let (low, high) = middles.fold((i64::MAX, i64::MIN), |(l, h), m| (l.min(m), h.max(m)));
-        high - low
-    };
-    let axis = usize::from(spread(1) > spread(0));
-    let mut middles: Vec<i64> = part.iter().map(|&b| middle(b, axis)).collect();
-    let half = middles.len() / 2;
-    let line = *middles.select_nth_unstable(half).1;
-    let side = |keep: &dyn Fn(&Box2) -> bool| -> Vec<usize> {
-        part.iter().copied().filter(|&b| keep(&boxes[b])).collect()
-    };
-    let below = side(&|b| b.low[axis] < line);
-    let above = side(&|b| b.high[axis] >= line);
-    let (sum, most) = (below.len() + above.len(), below.len().max(above.len()));
-    if 4 * sum > 5 * part.len() || 4 * most > 3 * part.len() {
-        return None;
-    }
-    let (mut lower, mut upper) = (cell, cell);
-    lower.high[axis] = line - 1;
-    upper.low[axis] = line;
-    Some([(below, lower), (above, upper)])
-}
 
-/// Visits the touching pairs whose common part begins in the cell; false when the visitor had enough.
-fn compare_all(
-    boxes: &[Box2],
-    part: &[usize],
-    cell: Box2,
-    visit: &mut dyn FnMut(usize, usize) -> bool,
-) -> bool {
-    for (n, &i) in part.iter().enumerate() {
-        for &j in &part[n + 1..] {
-            let (a, b) = (&boxes[i], &boxes[j]);
-            let begins = [0, 1].map(|k| a.low[k].max(b.low[k]));
-            let here = (0..2).all(|k| cell.low[k] <= begins[k] && begins[k] <= cell.high[k]);
-            if a.touches(b) && here && !visit(i, j) {
-                return false;
+    /// Whether a shape may have a point in common with a cell: no axis and no edge of it parts them.
+    fn reaches(&self, shape: usize, cell: &Box2) -> bool {
+        let points = &self.shapes[shape];
+        let apart = |k: usize| {
+            let (a, b) = (points[k], points[(k + 1) % N]);
+            let sides = |p: &[Lattice]| {
+                p.iter().fold((0, 0), |(low, high): (i64, i64), &p| {
+                    let side = area(a, b, p);
+                    (low.min(side), high.max(side))
+                })
+            };
+            let (low, high) = sides(points);
+            let corners = cell.corners().map(|c| area(a, b, c));
+            corners.iter().all(|&c| c > high) || corners.iter().all(|&c| c < low)
+        };
+        self.boxes[shape].touches(cell) && !(0..N).any(apart)
+    }
+
+    /// Visits the pairs whose boxes touch; false when the visitor had enough.
+    fn compare_all(&self, part: &[usize], visit: &mut dyn FnMut(usize, usize) -> bool) -> bool {
+        for (n, &i) in part.iter().enumerate() {
+            for &j in &part[n + 1..] {
+                if self.boxes[i].touches(&self.boxes[j]) && !visit(i, j) {
+                    return false;
+                }
             }
         }
+        true
     }
-    true
 }

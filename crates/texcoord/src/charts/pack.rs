@@ -19,7 +19,7 @@ use super::packer::Packer;
 pub const MAX_ATLAS_SIZE: u32 = 16384;
 
 /// Largest number of images.
-const MAX_IMAGES: u32 = 256;
+pub(crate) const MAX_IMAGES: u32 = 256;
 
 /// Share of the image that padding may take where the size is chosen.
 const AUTO_PADDING_SHARE: f64 = 0.03;
@@ -181,6 +181,18 @@ pub fn pack(
         }
         Density::TexelsPerUnit(density) => Err(ChartError::Density { density }),
     }
+}
+
+/// Puts more effort into a quick packing of charts into one image.
+pub(crate) fn improve(
+    charts: &[FlatChart],
+    options: &PackOptions,
+    quick: Packing,
+    for_each: ForEach<'_>,
+) -> Packing {
+    let outlines: Vec<Outline> = charts.iter().map(Outline::of).collect();
+    let area: f64 = outlines.iter().map(|o| o.area).sum();
+    Packer::new(&outlines, quick.size, options).improve(quick, area, for_each)
 }
 
 impl PackOptions {

@@ -25,7 +25,7 @@ const DENSITY_PRECISION: f64 = 1.004;
 const COARSE_PRECISION: f64 = 1.02;
 
 /// Charts above which one way of packing is tried, and a search starts where the last one of that size ended.
-pub(crate) const MANY_CHARTS: usize = 1000;
+pub(crate) const MANY_CHARTS: usize = 256;
 
 /// Added to half the gap, in texels: more than the rounding of coordinates, so that the gap is never a texel short.
 pub(crate) const MARGIN_SLACK: f64 = 1.0 / 64.0;
@@ -118,20 +118,28 @@ impl<'a> Packer<'a> {
     pub(crate) fn fit(&self, area: f64, for_each: ForEach<'_>) -> Result<Packing, ChartError> {
         let first = self.densest(STRATEGIES[0], area, None);
         let (density, placements) = first.ok_or_else(|| self.no_room())?;
-        let others = match self.effort {
-            Effort::Thorough if self.outlines.len() <= MANY_CHARTS => &STRATEGIES[1..],
-            _ => &[],
-        };
-        let improved = results(for_each, others.len(), &|k| {
-            self.densest(others[k], area, Some(density))
+        let packing = self.packing(density, placements, area);
+        Ok(match self.effort {
+            Effort::Thorough if self.outlines.len() <= MANY_CHARTS => {
+                self.improve(packing, area, for_each)
+            }
+            _ => packing,
+        })
+    }
+
+    /// The best of a packing by the first strategy and what the others make of the charts.
+    pub(crate) fn improve(&self, first: Packing, area: f64, for_each: ForEach<'_>) -> Packing {
+        let others = &STRATEGIES[1..];
+        let found = results(for_each, others.len(), &|k| {
+            self.densest(others[k], area, Some(first.density))
         });
-        let mut best = (density, placements);
-        for other in improved.into_iter().flatten() {
-            if other.0 > best.0 {
-                best = other;
+        let mut best = first;
+        for (density, placements) in found.into_iter().flatten() {
+            if density > best.density {
+                best = self.packing(density, placements, area);
             }
         }
-        Ok(self.packing(best.0, best.1, area))
+        best
     }
 
     /// All charts at a density in at most `limit` images, each chart in the first that has room.
@@ -198,8 +206,8 @@ impl<'a> Packer<'a> {
         let mut images: Vec<Occupancy> = Vec::new();
         let mut longest_run = None;
         let mut placements = vec![None; self.outlines.len()];
-        // For each size of mask the image and row where the last one went.
-        let mut hints: BTreeMap<(usize, usize), (usize, usize)> = BTreeMap::new();
+        // For each class of masks the image and row where the last one went.
+        let mut hints: BTreeMap<(u32, u32), (usize, usize)> = BTreeMap::new();
         for &chart in &self.order {
             let turned = self.turned_masks(chart, density, strategy);
             let first = &turned.first()?.mask;
@@ -208,7 +216,7 @@ impl<'a> Packer<'a> {
                 let runs = turned.iter().map(|one| one.mask.longest_run());
                 runs.max().unwrap_or(1)
             });
-            let key = (first.width, first.height());
+            let key = size_class(first);
             let hint = match hints.get(&key) {
                 Some(&hint) if self.order.len() > MANY_CHARTS => hint,
                 _ => (0, 0),
@@ -328,4 +336,10 @@ fn best_place(
         }
     }
     best.map(|(_, k, place)| (k, place))
+}
+
+/// Masks of one class are searched from where the last of them went: sides in steps of √2.
+fn size_class(mask: &Mask) -> (u32, u32) {
+    let class = |side: usize| (side * side).max(1).ilog2();
+    (class(mask.width), class(mask.height()))
 }

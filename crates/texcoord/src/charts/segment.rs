@@ -99,7 +99,14 @@ pub(crate) fn divide(surface: &Surface, faces: &[u32], count: usize) -> Vec<Vec<
     for _ in 0..SMOOTHINGS {
         flood.cut_teeth();
     }
-    connected_parts(&region, &flood.labels)
+    let parts = connected_parts(&region, &flood.labels);
+    if parts.len() > 1 {
+        return parts;
+    }
+    // Extremes of scale can leave costs that compare nothing; the numbers of the faces always divide.
+    let half = id(faces.len() / 2);
+    let labels: Vec<u32> = (0..id(faces.len())).map(|f| u32::from(f >= half)).collect();
+    connected_parts(&region, &labels)
 }
 
 /// Whether a piece is closed or bends, in two directions, further than a chart should.

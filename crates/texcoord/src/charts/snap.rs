@@ -95,3 +95,52 @@ fn round(p: DVec2) -> Lattice {
     let p = p.clamp(DVec2::ZERO, DVec2::splat(STEPS));
     [p.x.round() as i64, p.y.round() as i64]
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A fan around one point whose spokes are a few lattice steps long, so that rounding alone folds it.
+    fn fine_fan(spokes: u32, length: f64, start: f64) -> (Vec<[u32; 3]>, Vec<DVec2>) {
+        let mut points = vec![DVec2::splat(0.5) + DVec2::new(0.3, 0.4) / STEPS];
+        for k in 0..spokes {
+            let angle = start + std::f64::consts::TAU * f64::from(k) / f64::from(spokes);
+            let (sin, cos) = libm::sincos(angle);
+            points.push(points[0] + DVec2::new(cos, sin) * length / STEPS);
+        }
+        let triangles = (0..spokes).map(|k| [0, 1 + k, 1 + (k + 1) % spokes]);
+        (triangles.collect(), points)
+    }
+
+    #[test]
+    fn triangles_of_a_few_steps_stay_unfolded() {
+        let mut folded_by_rounding = 0;
+        for case in 0..40 {
+            let (triangles, points) = fine_fan(8, 1.3, 0.05 * f64::from(case));
+            let rounded: Vec<Lattice> = points.iter().map(|p| round(*p * STEPS)).collect();
+            let folded = |lattice: &[Lattice]| {
+                let all = triangles.iter();
+                all.filter(|t| doubled(**t, lattice) <= 0).count()
+            };
+            folded_by_rounding += usize::from(folded(&rounded) > 0);
+            let snapped = snap(&triangles, &points);
+            assert_eq!(folded(&snapped), 0, "case {case}");
+            for (p, l) in points.iter().zip(&snapped) {
+                let moved = *p * STEPS - DVec2::new(l[0] as f64, l[1] as f64);
+                assert!(moved.abs().max_element() <= 0.5 + (ROUNDS as f64) * REACH as f64);
+            }
+        }
+        assert!(folded_by_rounding > 10);
+    }
+
+    #[test]
+    fn points_outside_come_to_the_border() {
+        let points = [
+            DVec2::new(-1e-12, 0.5),
+            DVec2::new(1.0 + 1e-12, 0.5),
+            DVec2::NAN,
+        ];
+        let snapped = snap(&[], &points);
+        assert_eq!(snapped[..2], [[0, 1 << 23], [1 << 24, 1 << 23]]);
+    }
+}

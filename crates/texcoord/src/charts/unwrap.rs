@@ -6,7 +6,9 @@ use super::atlas::{Atlas, assemble};
 use super::flatten::{FlatChart, FlattenOptions, flatten, flatten_whole};
 use super::for_each::{ForEach, results};
 use super::merge::pairs_to_merge;
-use super::pack::{AtlasSize, Effort, MAX_ATLAS_SIZE, PackOptions, Packing, pack};
+use super::pack::{
+    AtlasSize, Effort, MAX_ATLAS_SIZE, MAX_IMAGES, PackOptions, Packing, improve, pack,
+};
 use super::packer::MANY_CHARTS;
 use super::segment::{Segmentation, divide};
 use super::surface::{Surface, Weld};
@@ -18,10 +20,7 @@ const MERGE_ROUNDS: usize = 3;
 /// Rounds in which the charts that waste most room are divided.
 const DIVIDE_ROUNDS: usize = 12;
 
-/// Utilisation missing from which charts are divided into more than two parts.
-const FAR_FROM_GOAL: f64 = 0.045;
-
-/// Share of the whole area that a part should then have.
+/// Share of the whole area that a part should have where charts are divided at once.
 const PART_SHARE: f64 = 1.0 / 24.0;
 
 /// Utilisation that divided charts must add to be preferred.
@@ -92,8 +91,8 @@ pub enum Progress {
 /// surface: its signed area in (s, t), t down, is negative, so tangents of these coordinates have handedness +1 (glTF's
 /// bitangent is cross(normal, tangent)·w).
 ///
-/// Faulty faces ([`FaceFault`](super::FaceFault)) belong to no chart. A duplicate has the coordinates of the face it repeats; all others
-/// are at (0, 0).
+/// Faulty faces ([`FaceFault`](super::FaceFault)) belong to no chart. A duplicate has the coordinates of the face it
+/// repeats; all others are at (0, 0).
 ///
 /// The result depends on neither `for_each` nor the machine.
 ///
@@ -126,8 +125,8 @@ pub fn unwrap(
     };
     let charts = work.flatten_all(&segmentation.charts);
     let charts = work.merge_small(charts);
-    let (charts, packing) = work.pack_well(charts)?;
-    Ok(assemble(&surface, &charts, packing))
+    let packed = work.pack_well(charts)?;
+    Ok(assemble(&surface, &packed.charts, packed.packing))
 }
 
 struct Work<'a> {
@@ -135,6 +134,13 @@ struct Work<'a> {
     options: &'a UnwrapOptions,
     for_each: ForEach<'a>,
     progress: &'a (dyn Fn(Progress) + Sync),
+}
+
+/// Charts and where they lie.
+#[derive(Clone)]
+struct Packed {
+    charts: Vec<FlatChart>,
+    packing: Packing,
 }
 
 impl Work<'_> {
@@ -180,46 +186,69 @@ impl Work<'_> {
         charts
     }
 
-    /// Packs, and divides wasteful charts until the image is used enough.
-    fn pack_well(
-        &self,
-        mut charts: Vec<FlatChart>,
-    ) -> Result<(Vec<FlatChart>, Packing), ChartError> {
+    /// Packs; where the image is not used enough, divides wasteful charts, by two plans: at once into about as many
+    /// parts as pack well, and step by step into halves, which is taken where it needs far fewer charts.
+    fn pack_well(&self, mut charts: Vec<FlatChart>) -> Result<Packed, ChartError> {
         self.divide_too_large(&mut charts);
-        let mut packing = self.pack_to_goal(&charts)?;
-        let mut best = (charts.clone(), packing.clone());
+        let whole = Packed {
+            packing: self.pack_to_goal(&charts)?,
+            charts,
+        };
+        if self.is_enough(&whole.packing) {
+            return Ok(whole);
+        }
+        let at_once = self.divide_to_goal(whole.clone(), PART_SHARE, usize::MAX);
+        let found = self.is_enough(&at_once.packing);
+        // Time for halving is well spent only where it may save a quarter of the charts.
+        let limit = if found {
+            at_once.charts.len() * 3 / 4
+        } else {
+            usize::MAX
+        };
+        let by_halves = self.divide_to_goal(whole, 1.0, limit);
+        let better = if found {
+            self.is_enough(&by_halves.packing)
+        } else {
+            by_halves.packing.utilisation > at_once.packing.utilisation
+        };
+        Ok(if better { by_halves } else { at_once })
+    }
+
+    /// Divides the charts that waste most, round by round, until the image is used enough, there are `limit` charts, or
+    /// it does not pay. Returns what used the image best.
+    fn divide_to_goal(&self, whole: Packed, share: f64, limit: usize) -> Packed {
+        let mut charts = whole.charts.clone();
+        let mut best = whole;
         let mut idle = 0;
         for _ in 0..DIVIDE_ROUNDS {
             let wasteful = wasteful_charts(&charts);
-            if self.is_enough(&packing) || wasteful.is_empty() {
+            self.divide(&mut charts, &wasteful, share);
+            if wasteful.is_empty() || charts.len() >= limit {
                 break;
             }
-            let missing = self.options.min_utilisation - packing.utilisation;
-            let share = if missing > FAR_FROM_GOAL {
-                PART_SHARE
-            } else {
-                1.0
-            };
-            self.divide(&mut charts, &wasteful, share);
-            packing = match self.pack_to_goal(&charts) {
+            let packing = match self.pack_to_goal(&charts) {
                 Ok(packing) => packing,
                 // More charts need more padding than there is room for.
                 Err(_) => break,
             };
             idle += 1;
-            if packing.utilisation > best.1.utilisation + MIN_GAIN {
-                best = (charts.clone(), packing.clone());
+            if packing.utilisation > best.packing.utilisation + MIN_GAIN {
+                best = Packed {
+                    charts: charts.clone(),
+                    packing,
+                };
                 idle = 0;
             }
-            if idle == MAX_IDLE_ROUNDS {
+            if idle == MAX_IDLE_ROUNDS || self.is_enough(&best.packing) {
                 break;
             }
         }
-        let hopeless = best.1.utilisation + THOROUGH_GAIN < self.options.min_utilisation;
-        if hopeless && !self.is_enough(&best.1) && self.can_improve(&best.0) {
-            best.1 = pack(&best.0, &self.options.pack, self.for_each)?;
+        let hopeless = best.packing.utilisation + THOROUGH_GAIN < self.options.min_utilisation;
+        if hopeless && self.can_improve(&best.charts) {
+            let options = &self.options.pack;
+            best.packing = improve(&best.charts, options, best.packing, self.for_each);
         }
-        Ok(best)
+        best
     }
 
     /// Divides charts until none is wider than an image at the density asked for, as far as they have faces.
@@ -232,6 +261,12 @@ impl Work<'_> {
         let Density::TexelsPerUnit(density) = pack.density else {
             return;
         };
+        // No number of parts helps where all images together are too small.
+        let area: f64 = charts.iter().map(FlatChart::area).sum();
+        let side = f64::from(size) * f64::from(MAX_IMAGES).sqrt();
+        if area.sqrt() * density > side {
+            return;
+        }
         // A little room for cells that do not begin where a chart does.
         let room = 0.98 * f64::from(size) - f64::from(pack.gap()) - 4.0;
         loop {
@@ -289,7 +324,7 @@ impl Work<'_> {
         if hopeless || !self.can_improve(charts) {
             return Ok(packing);
         }
-        pack(charts, &self.options.pack, self.for_each)
+        Ok(improve(charts, &self.options.pack, packing, self.for_each))
     }
 }
 

@@ -118,6 +118,26 @@ fn more_stretch_allowed_makes_fewer_charts() {
 }
 
 #[test]
+fn a_surface_that_conformal_maps_fold_is_flattened_whole() {
+    // Spikes several times as high as cells are wide.
+    let mesh = meshes::patch(14, 14, |p| {
+        let spike = libm::fmod(libm::fabs(libm::sin(p.x * 431.0 + p.y * 977.0)) * 1e4, 1.0);
+        DVec3::new(p.x, p.y, 0.6 * spike)
+    });
+    let disk = whole_disk(&mesh);
+    let conformal = lscm(&disk).unwrap();
+    assert!(
+        disk.triangles()
+            .iter()
+            .any(|t| signed_area(t, &conformal) <= 0.0)
+    );
+    let all: Vec<u32> = (0..mesh.1.len() as u32).collect();
+    let charts = flatten(&surface(&mesh), &all, &FlattenOptions { max_stretch: 10.0 });
+    assert_eq!(charts.len(), 1);
+    assert_flat(&charts[0], 10.0);
+}
+
+#[test]
 fn needles_do_not_stop_the_descent() {
     // A cylinder piece of triangles 1:600.
     let mesh = meshes::cylinder(300, 1, 3.0);

@@ -7,7 +7,7 @@ use texcoord::charts::{
     triangle_pairs,
 };
 
-use super::touched::{assert_apart, owners};
+use super::touched::{assert_apart, owners, owners_at_level};
 
 /// A chart that is a polygon around the origin, as a fan of triangles.
 fn star(radii: &[f64]) -> FlatChart {
@@ -262,6 +262,10 @@ proptest! {
         let packing = pack(&charts, &options, &in_order).unwrap();
         prop_assert_eq!(packing.images, 1);
         assert_packed(&charts, &packing, options.gap());
+        // Bilinear filtering inside a texel reads the texels around it.
+        let (st, of) = corners(&charts, &packing, 0);
+        let coarse = owners_at_level(256, &owners(256, &st, &of), levels);
+        assert_apart(256 >> levels, &coarse, 1);
         let area: f64 = charts.iter().map(FlatChart::area).sum();
         let share = area * packing.density * packing.density / (256.0 * 256.0);
         prop_assert!((packing.utilisation - share).abs() < 1e-9);

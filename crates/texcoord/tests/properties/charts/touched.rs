@@ -40,6 +40,20 @@ fn has_area_in(p: [DVec2; 3], low: DVec2) -> bool {
     winding != 0.0 && !beyond_edge && !beyond_side
 }
 
+/// The same at a mip level, whose texels are squares of 2^level; panics where two charts touch one.
+pub(crate) fn owners_at_level(size: u32, owners: &[Option<u32>], level: u32) -> Vec<Option<u32>> {
+    let coarse = size >> level;
+    let mut result = vec![None; (coarse * coarse) as usize];
+    for (at, &owner) in (0u32..).zip(owners) {
+        let (x, y) = ((at % size) >> level, (at / size) >> level);
+        if let Some(owner) = owner {
+            let known = result[(y * coarse + x) as usize].get_or_insert(owner);
+            assert_eq!(*known, owner, "two charts touch a texel of level {level}");
+        }
+    }
+    result
+}
+
 /// Asserts that between texels of two charts there are at least `gap` others, along one axis at least.
 pub(crate) fn assert_apart(size: u32, owners: &[Option<u32>], gap: u32) {
     let side = i64::from(size);

@@ -6,8 +6,8 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use glam::{Vec2, Vec3};
 use proptest::prelude::*;
 use texcoord::charts::{
-    Atlas, AtlasSize, Density, Distortion, Effort, PackOptions, Progress, Surface, UnwrapOptions,
-    Weld, in_order, unwrap,
+    Atlas, AtlasSize, ChartError, Density, Distortion, Effort, PackOptions, Progress, Segmentation,
+    Surface, UnwrapOptions, Weld, flatten, in_order, unwrap,
 };
 
 use super::meshes;
@@ -86,6 +86,10 @@ fn hard_meshes_by_name() {
     let tiny: Vec<Vec3> = square.iter().map(|&p| p * 1e-38).collect();
     let far: Vec<Vec3> = square.iter().map(|&p| p + Vec3::splat(1e6)).collect();
     let halves = vec![[0, 1, 2], [0, 2, 3]];
+    let scales = [1e38, 1e20, 1.0, 1e-10, 1e-30, 1e-38];
+    let mixed: Vec<Vec3> = scales.iter().flat_map(|&s| square.map(|p| p * s)).collect();
+    let mixed_faces =
+        (0..6).flat_map(|k| [[4 * k, 4 * k + 1, 4 * k + 2], [4 * k, 4 * k + 2, 4 * k + 3]]);
     let bow_tie = vec![[0, 1, 2], [0, 3, 4]];
     let meshes = [
         ("empty", (vec![], vec![])),
@@ -95,6 +99,7 @@ fn hard_meshes_by_name() {
         ("huge", (huge, halves.clone())),
         ("tiny", (tiny, halves.clone())),
         ("far away", (far, halves)),
+        ("mixed scales", (mixed, mixed_faces.collect())),
         (
             "bow tie",
             (
@@ -123,6 +128,43 @@ fn hard_meshes_by_name() {
             "{name}: {}",
             figures.l2_stretch
         );
+    }
+}
+
+#[test]
+fn small_charts_join_their_neighbours() {
+    let (mut positions, mut triangles) = (Vec::new(), Vec::new());
+    for patch in texcoord::teapot::patches() {
+        let grid = patch.tessellate(8);
+        let base = positions.len() as u32;
+        positions.extend(grid.positions);
+        triangles.extend(grid.triangles.iter().map(|t| t.map(|v| v + base)));
+    }
+    let surface = Surface::of(&positions, &triangles, Weld::ByPosition).unwrap();
+    let options = UnwrapOptions {
+        min_utilisation: 0.0,
+        ..UnwrapOptions::default()
+    };
+    let alone: usize = Segmentation::of(&surface)
+        .charts
+        .iter()
+        .map(|chart| flatten(&surface, chart, &options.flatten).len())
+        .sum();
+    let atlas = unwrapped(&(positions, triangles), &options);
+    assert!(
+        atlas.images.len() + 5 <= alone,
+        "{} of {alone}",
+        atlas.images.len()
+    );
+}
+
+#[test]
+fn a_hub_and_needles_end_in_bounded_time() {
+    // 3000 needles around each pole; systems without an order for hubs would be dense.
+    let can = meshes::torus(3000, 3, 0.3);
+    let fan = meshes::fan(3000, 0.0);
+    for mesh in [can, fan] {
+        assert_sound(&mesh, &unwrapped(&mesh, &small()), 2);
     }
 }
 
@@ -235,6 +277,20 @@ fn progress_counts_up_to_all_faces() {
         of: 1280
     }));
     assert!(matches!(seen.last(), Some(Progress::Packing { .. })));
+}
+
+#[test]
+fn a_density_beyond_all_images_is_an_error() {
+    let mesh = meshes::icosphere(3);
+    for density in [1e5, 1e30] {
+        let mut options = small();
+        options.pack.density = Density::TexelsPerUnit(density);
+        let unwrapped = unwrap(&mesh.0, &mesh.1, &options, &in_order, &|_| {});
+        assert!(
+            matches!(unwrapped, Err(ChartError::NoRoom { .. })),
+            "{density}"
+        );
+    }
 }
 
 #[test]
