@@ -57,6 +57,10 @@
 //! # Ok::<(), texrender::Error>(())
 //! ```
 //!
+//! # Texture coordinates for models that have none
+//! [`unwrap`] lays the triangles of a glTF file flat into an atlas and writes the file again, with everything else that
+//! it holds.
+//!
 //! # The pieces
 //! The seven crates below are re-exported: [`texcoord`], [`sampler`], [`mipmap`], [`normalmap`],
 //! [`shading`], [`envmap`], [`raster`]. Each can be used alone.
@@ -81,6 +85,7 @@ pub mod plan;
 pub mod prepare;
 pub mod render;
 pub mod scene;
+pub mod unwrap;
 
 mod error;
 mod number;

@@ -9,6 +9,8 @@ use crate::error::Error;
 
 /// A file taken apart, its JSON parsed but not checked.
 pub(crate) struct Container {
+    /// The JSON as text.
+    pub text: Vec<u8>,
     pub root: Root,
     pub blob: Option<Vec<u8>>,
     pub warnings: Vec<String>,
@@ -33,6 +35,7 @@ pub(crate) fn parse(path: &Path, bytes: Vec<u8>) -> Result<Container, Error> {
     repair_samplers(&mut root, &mut warnings);
     repair_images(&mut root, &mut warnings);
     Ok(Container {
+        text,
         root,
         blob,
         warnings,
@@ -69,7 +72,7 @@ fn first_bytes(bytes: &[u8]) -> String {
     }
 }
 
-fn json_error(path: &Path, error: &json::Error) -> Error {
+pub(crate) fn json_error(path: &Path, error: &json::Error) -> Error {
     let detail = error.to_string();
     let place = format!(" at line {} column {}", error.line(), error.column());
     Error::Json {

@@ -10,7 +10,7 @@ pub(crate) mod accessor;
 mod animation;
 pub(crate) mod buffers;
 pub(crate) mod container;
-mod extensions;
+pub(crate) mod extensions;
 mod material;
 pub(crate) mod nodes;
 mod picture;
