@@ -22,3 +22,4 @@ mod renderer;
 mod scene_files;
 mod showcase;
 mod tile;
+mod unwrap;
