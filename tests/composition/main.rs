@@ -23,3 +23,4 @@ mod renderer;
 mod scene_files;
 mod showcase;
 mod tile;
+mod unwrap;

@@ -62,6 +62,10 @@
 //! [`load_document`] reads one with the picture that it asks for. Its mappings are [`scene::SurfaceMapping`]s, evaluated
 //! per pixel; [`Settings::show`] makes coordinates visible.
 //!
+//! # Texture coordinates for models that have none
+//! [`unwrap`] lays the triangles of a glTF file flat into an atlas and writes the file again, with everything else that
+//! it holds.
+//!
 //! # The pieces
 //! The seven crates below are re-exported: [`texcoord`], [`sampler`], [`mipmap`], [`normalmap`],
 //! [`shading`], [`envmap`], [`raster`]. Each can be used alone.
@@ -86,6 +90,7 @@ pub mod plan;
 pub mod prepare;
 pub mod render;
 pub mod scene;
+pub mod unwrap;
 
 mod error;
 mod number;

@@ -16,8 +16,8 @@ use crate::render::Film;
 use crate::settings::{Aov, Background};
 pub use encode::{BitDepth, FileFormat};
 pub use replace::check_folder;
-#[cfg(feature = "frontier")]
 pub(crate) use replace::replace;
+pub(crate) use texture::save_rgb8;
 pub use texture::{check_holds_texture, save_texture};
 pub use tonemap::ToneMap;
 

@@ -26,6 +26,23 @@ pub fn save_texture(texture: &Texture, path: impl AsRef<Path>) -> Result<(), Err
     replace::replace(path, &bytes)
 }
 
+/// Writes codes of 8 bits, RGB row by row, to a PNG file. The file appears whole or not at all.
+pub(crate) fn save_rgb8(
+    samples: &[u8],
+    (width, height): (u32, u32),
+    path: &Path,
+) -> Result<(), Error> {
+    check_holds_texture(path)?;
+    let mut bytes = Cursor::new(Vec::new());
+    PngEncoder::new_with_quality(&mut bytes, CompressionType::Fast, PNG_FILTER)
+        .write_image(samples, width, height, ExtendedColorType::Rgb8)
+        .map_err(|error| Error::Write {
+            path: path.to_owned(),
+            detail: error.to_string(),
+        })?;
+    replace::replace(path, &bytes.into_inner())
+}
+
 /// Checks that textures can be written to `path`, before any work is done for it.
 ///
 /// # Errors

@@ -7,11 +7,11 @@ use crate::error::Error;
 use crate::number::nearest_f32;
 
 /// Reads an accessor of `N` components as f32; normalised integers become −1..=1 or 0..=1.
-pub(super) fn read_f32<const N: usize>(
+pub(crate) fn read_f32<const N: usize>(
     file: &File,
     accessor: &Accessor,
 ) -> Result<Vec<[f32; N]>, Error> {
-    read(file, accessor, N, 0.0, float_decoder(accessor))
+    read(file, accessor, float_decoder(accessor))
 }
 
 /// Reads an accessor of `N` unsigned integer components.
@@ -30,7 +30,7 @@ pub(super) fn read_u32<const N: usize>(
             ));
         }
     };
-    read(file, accessor, N, 0, decode)
+    read(file, accessor, decode)
 }
 
 /// Number of components of one element.
@@ -63,22 +63,30 @@ fn float_decoder(accessor: &Accessor) -> fn(&[u8]) -> f32 {
     }
 }
 
-/// Reads the dense part (zeros where there is none), then the sparse one over it.
+/// Reads elements of `N` components.
 fn read<T: Copy, const N: usize>(
     file: &File,
     accessor: &Accessor,
-    expected: usize,
-    zero: T,
     decode: fn(&[u8]) -> T,
 ) -> Result<Vec<[T; N]>, Error> {
     let error = |detail: String| file.error(place(accessor), detail);
-    if components(accessor) != expected || is_matrix(accessor.dimensions()) && N != 16 {
+    if components(accessor) != N || is_matrix(accessor.dimensions()) && N != 16 {
         return Err(error(format!(
-            "has {} components an element, where {expected} are needed",
+            "has {} components an element, where {N} are needed",
             components(accessor)
         )));
     }
-    let bytes = accessor.count().saturating_mul(size_of::<[T; N]>()) as u64;
+    let width = accessor.data_type().size();
+    check_memory(file, accessor, size_of::<[T; N]>())?;
+    let stored = stored(file, accessor)?;
+    let elements = stored.chunks_exact(width * N);
+    Ok(elements
+        .map(|bytes| std::array::from_fn(|i| decode(&bytes[i * width..])))
+        .collect())
+}
+
+fn check_memory(file: &File, accessor: &Accessor, element: usize) -> Result<(), Error> {
+    let bytes = accessor.count().saturating_mul(element) as u64;
     if bytes > file.options.max_memory {
         return Err(Error::Memory {
             what: format!("{} of {}", place(accessor), file.path.display()),
@@ -86,11 +94,30 @@ fn read<T: Copy, const N: usize>(
             available: file.options.max_memory >> 20,
         });
     }
+    Ok(())
+}
+
+/// Bytes of one element. Columns of a matrix begin at multiples of four bytes: glTF 2.0, section 3.6.2.4.
+pub(crate) fn element_bytes(accessor: &Accessor) -> usize {
     let width = accessor.data_type().size();
+    let column = |rows: usize| (rows * width).next_multiple_of(4);
+    match accessor.dimensions() {
+        Dimensions::Mat2 => 2 * column(2),
+        Dimensions::Mat3 => 3 * column(3),
+        Dimensions::Mat4 => 4 * column(4),
+        _ => width * components(accessor),
+    }
+}
+
+/// The elements as they are stored, one after the other: the dense part (zeros where there is none), the sparse one
+/// over it.
+pub(crate) fn stored(file: &File, accessor: &Accessor) -> Result<Vec<u8>, Error> {
+    let error = |detail: String| file.error(place(accessor), detail);
+    let element = element_bytes(accessor);
+    check_memory(file, accessor, element)?;
     let mut values = match accessor.view() {
-        None => vec![[zero; N]; accessor.count()],
+        None => vec![0; accessor.count() * element],
         Some(view) => {
-            let element = width * N;
             let strided = Strided {
                 bytes: file.buffers.view(&view)?,
                 offset: accessor.offset(),
@@ -98,22 +125,21 @@ fn read<T: Copy, const N: usize>(
                 element,
                 count: accessor.count(),
             };
-            strided
-                .elements()
-                .ok_or_else(|| {
-                    error(format!(
-                        "{} elements reach past the end of bufferViews[{}] ({} bytes)",
-                        accessor.count(),
-                        view.index(),
-                        view.length()
-                    ))
-                })?
-                .map(|bytes| element_of(bytes, width, decode))
-                .collect()
+            let elements = strided.elements().ok_or_else(|| {
+                error(format!(
+                    "{} elements reach past the end of bufferViews[{}] ({} bytes)",
+                    accessor.count(),
+                    view.index(),
+                    view.length()
+                ))
+            })?;
+            let mut dense = Vec::with_capacity(accessor.count() * element);
+            elements.for_each(|bytes| dense.extend_from_slice(bytes));
+            dense
         }
     };
     if let Some(sparse) = accessor.sparse() {
-        overlay(file, accessor, &sparse, &mut values, decode)?;
+        overlay(file, accessor, &sparse, &mut values)?;
     }
     Ok(values)
 }
@@ -125,25 +151,16 @@ fn is_matrix(dimensions: Dimensions) -> bool {
     )
 }
 
-fn element_of<T: Copy, const N: usize>(
-    bytes: &[u8],
-    width: usize,
-    decode: fn(&[u8]) -> T,
-) -> [T; N] {
-    std::array::from_fn(|i| decode(&bytes[i * width..]))
-}
-
 /// Writes the sparse elements of an accessor over its dense ones.
-fn overlay<T: Copy, const N: usize>(
+fn overlay(
     file: &File,
     accessor: &Accessor,
     sparse: &sparse::Sparse,
-    values: &mut [[T; N]],
-    decode: fn(&[u8]) -> T,
+    values: &mut [u8],
 ) -> Result<(), Error> {
     let error = |detail: String| file.error(format!("{}.sparse", place(accessor)), detail);
     let (index_view, value_view) = (sparse.indices().view(), sparse.values().view());
-    let width = accessor.data_type().size();
+    let element = element_bytes(accessor);
     let index_width = sparse.indices().index_type().size();
     let indices = Strided {
         bytes: file.buffers.view(&index_view)?,
@@ -155,8 +172,8 @@ fn overlay<T: Copy, const N: usize>(
     let replacements = Strided {
         bytes: file.buffers.view(&value_view)?,
         offset: sparse.values().offset(),
-        stride: value_view.stride().unwrap_or(width * N),
-        element: width * N,
+        stride: value_view.stride().unwrap_or(element),
+        element,
         count: sparse.count(),
     };
     let (Some(indices), Some(replacements)) = (indices.elements(), replacements.elements()) else {
@@ -171,11 +188,12 @@ fn overlay<T: Copy, const N: usize>(
             .iter()
             .rev()
             .fold(0usize, |n, &b| n << 8 | usize::from(b));
-        let count = values.len();
-        *values
-            .get_mut(index)
-            .ok_or_else(|| error(format!("index {index}, and there are {count} elements")))? =
-            element_of(replacement, width, decode);
+        let count = accessor.count();
+        values
+            .chunks_exact_mut(element)
+            .nth(index)
+            .ok_or_else(|| error(format!("index {index}, and there are {count} elements")))?
+            .copy_from_slice(replacement);
     }
     Ok(())
 }

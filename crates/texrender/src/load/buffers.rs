@@ -11,7 +11,8 @@ use super::uri::{Target, resolve};
 use crate::error::Error;
 
 /// Bytes of the buffers, each read once.
-pub(super) struct Buffers {
+#[derive(Debug)]
+pub(crate) struct Buffers {
     path: PathBuf,
     outside: OutsidePaths,
     blob: Option<Arc<Vec<u8>>>,
@@ -19,7 +20,7 @@ pub(super) struct Buffers {
 }
 
 impl Buffers {
-    pub(super) fn new(
+    pub(crate) fn new(
         path: &Path,
         outside: OutsidePaths,
         blob: Option<Vec<u8>>,
@@ -51,7 +52,7 @@ impl Buffers {
     }
 
     /// The bytes of a buffer view.
-    pub(super) fn view(&self, view: &gltf::buffer::View) -> Result<&[u8], Error> {
+    pub(crate) fn view(&self, view: &gltf::buffer::View) -> Result<&[u8], Error> {
         let buffer = self.get(&view.buffer())?;
         view.offset()
             .checked_add(view.length())

@@ -8,15 +8,16 @@ use gltf::json::{self, Root};
 use crate::error::Error;
 
 /// A file taken apart, its JSON parsed but not checked.
-pub(super) struct Container {
+pub(crate) struct Container {
+    /// The JSON as text.
+    pub text: Vec<u8>,
     pub root: Root,
     pub blob: Option<Vec<u8>>,
     pub warnings: Vec<String>,
 }
 
-/// Reads and parses a file.
-pub(super) fn open(path: &Path) -> Result<Container, Error> {
-    let bytes = std::fs::read(path).map_err(|source| Error::read(path, source))?;
+/// Takes the bytes of the file `path` apart.
+pub(crate) fn parse(path: &Path, bytes: Vec<u8>) -> Result<Container, Error> {
     let (text, blob) = if bytes.starts_with(b"glTF") {
         let glb = gltf::Glb::from_slice(&bytes).map_err(|error| damaged(path, &bytes, &error))?;
         (glb.json.into_owned(), glb.bin.map(|b| b.into_owned()))
@@ -34,6 +35,7 @@ pub(super) fn open(path: &Path) -> Result<Container, Error> {
     repair_samplers(&mut root, &mut warnings);
     repair_images(&mut root, &mut warnings);
     Ok(Container {
+        text,
         root,
         blob,
         warnings,
@@ -70,7 +72,7 @@ fn first_bytes(bytes: &[u8]) -> String {
     }
 }
 
-fn json_error(path: &Path, error: &json::Error) -> Error {
+pub(crate) fn json_error(path: &Path, error: &json::Error) -> Error {
     let detail = error.to_string();
     let place = format!(" at line {} column {}", error.line(), error.column());
     Error::Json {
@@ -120,7 +122,7 @@ fn repair_images(root: &mut Root, warnings: &mut Vec<String>) {
 }
 
 /// The document, once every reference in it is known to resolve.
-pub(super) fn validated(
+pub(crate) fn validated(
     path: &Path,
     mut root: Root,
     warnings: &mut Vec<String>,

@@ -34,3 +34,34 @@ pub(super) fn check(path: &Path, root: &Root, warnings: &mut Vec<String>) -> Res
     }
     Ok(())
 }
+
+/// Refuses a file that requires an extension which may change its geometry; others are carried as they are.
+pub(crate) fn check_geometry(path: &Path, root: &Root) -> Result<(), Error> {
+    let unknown = |name: &&String| {
+        !SUPPORTED.contains(&name.as_str()) && !leaves_geometry_alone(name.as_str())
+    };
+    match root.extensions_required.iter().find(unknown) {
+        None => Ok(()),
+        Some(name) => Err(Error::RequiredExtension {
+            path: path.to_owned(),
+            name: name.clone(),
+        }),
+    }
+}
+
+/// Whether an extension speaks of materials, textures or the like, not of accessors.
+pub(crate) fn leaves_geometry_alone(name: &str) -> bool {
+    const PREFIXES: &[&str] = &[
+        "EXT_lights_",
+        "EXT_texture_",
+        "KHR_animation_pointer",
+        "KHR_lights_",
+        "KHR_materials_",
+        "KHR_mesh_quantization",
+        "KHR_node_",
+        "KHR_texture_",
+        "KHR_xmp_json_ld",
+        "MSFT_texture_dds",
+    ];
+    PREFIXES.iter().any(|prefix| name.starts_with(prefix))
+}

@@ -6,22 +6,22 @@
 //! posed; images stay encoded. Nothing is fetched from a network, and no path leaves the scene's
 //! folder unless allowed.
 
-mod accessor;
+pub(crate) mod accessor;
 mod animation;
-mod buffers;
-mod container;
-mod extensions;
+pub(crate) mod buffers;
+pub(crate) mod container;
+pub(crate) mod extensions;
 mod material;
-mod nodes;
+pub(crate) mod nodes;
 mod picture;
 mod pose;
-mod primitive;
+pub(crate) mod primitive;
 mod scene_file;
 mod texture;
-mod uri;
+pub(crate) mod uri;
 
 use std::collections::HashMap;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use crate::error::Error;
 use crate::scene::Scene;
@@ -64,16 +64,17 @@ impl Default for LoadOptions {
 }
 
 /// A glTF file being read.
-struct File<'a> {
-    path: &'a Path,
-    options: &'a LoadOptions,
-    document: gltf::Document,
-    buffers: Buffers,
+#[derive(Debug)]
+pub(crate) struct File {
+    pub(crate) path: PathBuf,
+    pub(crate) options: LoadOptions,
+    pub(crate) document: gltf::Document,
+    pub(crate) buffers: Buffers,
 }
 
-impl File<'_> {
-    fn error(&self, place: impl Into<String>, detail: impl Into<String>) -> Error {
-        Error::scene(self.path, place, detail)
+impl File {
+    pub(crate) fn error(&self, place: impl Into<String>, detail: impl Into<String>) -> Error {
+        Error::scene(&self.path, place, detail)
     }
 }
 
@@ -89,14 +90,24 @@ pub fn load(path: impl AsRef<Path>, options: &LoadOptions) -> Result<Scene, Erro
     if scene_file::is_scene_file(path) {
         return load_document(path, options).map(|document| document.scene);
     }
-    let container = container::open(path)?;
+    let bytes = std::fs::read(path).map_err(|source| Error::read(path, source))?;
+    read_gltf(path, bytes, options)
+}
+
+/// Reads the scene that `bytes`, the content of the glTF file `path`, hold.
+pub(crate) fn read_gltf(
+    path: &Path,
+    bytes: Vec<u8>,
+    options: &LoadOptions,
+) -> Result<Scene, Error> {
+    let container = container::parse(path, bytes)?;
     let mut warnings = container.warnings;
     extensions::check(path, &container.root, &mut warnings)?;
     let document = container::validated(path, container.root, &mut warnings)?;
     let buffers = Buffers::new(path, options.outside, container.blob, &document);
     let file = File {
-        path,
-        options,
+        path: path.to_owned(),
+        options: options.clone(),
         document,
         buffers,
     };

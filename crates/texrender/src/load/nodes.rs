@@ -14,7 +14,7 @@ use crate::error::Error;
 use crate::scene::{Camera, Instance, Projection, Scene};
 
 /// World transforms of all nodes at the moment that is read.
-pub(super) struct Tree {
+pub(crate) struct Tree {
     world: Vec<DMat4>,
     /// Nodes of the scene, parents before children, in the order of the file.
     visible: Vec<usize>,
@@ -23,7 +23,7 @@ pub(super) struct Tree {
 
 impl Tree {
     /// Walks the hierarchy.
-    pub(super) fn new(file: &File) -> Result<Self, Error> {
+    pub(crate) fn new(file: &File) -> Result<Self, Error> {
         let nodes: Vec<gltf::Node> = file.document.nodes().collect();
         let children: Vec<Vec<usize>> = nodes
             .iter()
@@ -63,7 +63,7 @@ impl Tree {
     }
 
     /// From a node's space to the world.
-    pub(super) fn world(&self, node: usize) -> DMat4 {
+    pub(crate) fn world(&self, node: usize) -> DMat4 {
         self.world[node]
     }
 }

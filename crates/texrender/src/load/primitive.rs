@@ -9,14 +9,14 @@ use crate::error::Error;
 use crate::scene::{Primitive, Topology};
 
 /// Where a primitive stands in the file, for messages.
-#[derive(Clone, Copy)]
-pub(super) struct Place {
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Place {
     pub mesh: usize,
     pub primitive: usize,
 }
 
 impl Place {
-    pub(super) fn attribute(self, name: &str) -> String {
+    pub(crate) fn attribute(self, name: &str) -> String {
         format!(
             "meshes[{}].primitives[{}].attributes.{name}",
             self.mesh, self.primitive
@@ -110,7 +110,7 @@ fn colors(
 }
 
 /// The vertices of each element, every mode as a list.
-fn elements(
+pub(crate) fn elements(
     file: &File,
     place: Place,
     source: &gltf::Primitive,

@@ -41,7 +41,7 @@ fn image_source(file: &File, image: &gltf::Image) -> Result<ImageSource, Error> 
         }
         Source::Uri { uri, .. } => {
             let data = match resolve(
-                file.path,
+                &file.path,
                 &format!("{place}.uri"),
                 uri,
                 file.options.outside,

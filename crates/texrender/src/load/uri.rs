@@ -9,7 +9,7 @@ use super::OutsidePaths;
 use crate::error::Error;
 
 /// What a URI leads to.
-pub(super) enum Target {
+pub(crate) enum Target {
     /// Bytes in the URI itself.
     Data(Vec<u8>),
     /// A file.
@@ -17,7 +17,7 @@ pub(super) enum Target {
 }
 
 /// Resolves `uri`, found at `place` of the scene file `scene`.
-pub(super) fn resolve(
+pub(crate) fn resolve(
     scene: &Path,
     place: &str,
     uri: &str,
@@ -58,7 +58,7 @@ pub(super) fn local_file(
 }
 
 /// The scheme of an absolute URI. One letter is a drive, not a scheme.
-fn scheme(uri: &str) -> Option<&str> {
+pub(crate) fn scheme(uri: &str) -> Option<&str> {
     let (scheme, _) = uri.split_once(':')?;
     let valid = scheme.len() > 1
         && scheme.starts_with(|c: char| c.is_ascii_alphabetic())

@@ -8,6 +8,7 @@ use texrender::{
     FinishOptions, LoadOptions, Orbit, OutsidePaths, Settings, Show, SimdLevel, ToneMap, View,
 };
 
+use crate::unwrap::UnwrapArgs;
 use crate::values;
 
 /// Textured pictures of 3D scenes on a machine without a GPU.
@@ -33,6 +34,8 @@ pub(crate) enum Command {
     Schema(SchemaArgs),
     /// Measure a texture's seam, make it repeat without one, or make more of it that does not repeat.
     Tile(TileArgs),
+    /// Give a model texture coordinates: its triangles laid flat into one atlas.
+    Unwrap(Box<UnwrapArgs>),
     /// Measure every texture filter: its speed against its error, as data, plots and one HTML page.
     Frontier(FrontierArgs),
     /// Draw the scenes of other renderers' bench and time the frames as they do.

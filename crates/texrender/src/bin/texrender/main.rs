@@ -9,6 +9,7 @@ mod render;
 mod schema;
 mod stats;
 mod tile;
+mod unwrap;
 mod values;
 
 use std::process::ExitCode;
@@ -24,6 +25,7 @@ fn main() -> ExitCode {
         Command::Inspect(args) => inspect::run(&args),
         Command::Schema(args) => schema::run(&args),
         Command::Tile(args) => tile::run(&args),
+        Command::Unwrap(args) => unwrap::run(&args),
         Command::Frontier(args) => frontier::run(&args),
         Command::Bench(args) => bench::run(&args),
     };
