@@ -42,7 +42,7 @@
 //! and triangles within a tolerance of them that leave no cracks; [`teapot`] holds the 32 best known patches.
 //!
 //! # Charts
-//! `charts` (a feature of that name) makes coordinates for a mesh that has none: it cuts charts, flattens them without
+//! [`charts`] makes coordinates for a mesh that has none: it cuts charts, flattens them without
 //! folds and nearly isometrically, packs them by their shapes, and measures distortion.
 //!
 //! # Conventions
@@ -72,7 +72,6 @@
 //! KHR_texture_transform; Newell 1975; Crow 1987; Bier & Sloan 1986, "Two-Part Texture Mappings".
 #![forbid(unsafe_code)]
 
-#[cfg(feature = "charts")]
 pub mod charts;
 mod dual;
 pub mod mapping;

@@ -5,7 +5,6 @@
     reason = "strategies make grid points and exponents from fractions"
 )]
 
-#[cfg(feature = "charts")]
 mod charts;
 mod mapping;
 mod oracle;

@@ -135,7 +135,7 @@ fn hard_meshes_by_name() {
 fn small_charts_join_their_neighbours() {
     let (mut positions, mut triangles) = (Vec::new(), Vec::new());
     for patch in texcoord::teapot::patches() {
-        let grid = patch.tessellate(8);
+        let grid = patch.grid(8);
         let base = positions.len() as u32;
         positions.extend(grid.positions);
         triangles.extend(grid.triangles.iter().map(|t| t.map(|v| v + base)));
