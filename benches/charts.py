@@ -3,10 +3,10 @@
 
     cargo build --release -p texrender-rs
     pip install numpy xatlas
-    benches/charts.py [--threads N] [MODEL.glb ...]
+    benches/charts.py [--threads N] [MODEL.glb|MODEL.gltf ...]
 
-A torus knot and a bumpy sphere of 50,000 triangles, an icosphere, a knot of 200,000; of models the triangles of all
-meshes. Figures of both are taken from their coordinates by the same code (L² stretch as Sander et al. 2001; overlaps are
+A torus knot and a bumpy sphere of 50,000 triangles, an icosphere, a knot of 200,000, the showcase's teapot; of models the
+triangles of all meshes. --models leaves the first ones out. Figures of both are taken from their coordinates by the same code (L² stretch as Sander et al. 2001; overlaps are
 texrender's own count, in its report). xatlas with its default options; --skip leaves it out.
 """
 import argparse
@@ -100,11 +100,15 @@ def write_glb(path, points, triangles):
         out.write(struct.pack("<I4s", len(blob), b"BIN\0") + blob)
 
 
-def read_glb(path, coordinates=None):
-    """Positions and triangles of all meshes, and the set of coordinates that was written last."""
+def read_model(path, name=""):
+    """Positions and triangles of the meshes whose names hold `name`, and the set of coordinates that was written last."""
     data = open(path, "rb").read()
-    length = struct.unpack_from("<I", data, 12)[0]
-    root, blob = json.loads(data[20:20 + length]), data[28 + length:]
+    if data[:4] == b"glTF":
+        length = struct.unpack_from("<I", data, 12)[0]
+        root, blob = json.loads(data[20:20 + length]), data[28 + length:]
+    else:
+        root = json.loads(data)
+        blob = open(os.path.join(os.path.dirname(path), root["buffers"][0]["uri"]), "rb").read()
     kinds = {5121: "<u1", 5123: "<u2", 5125: "<u4", 5126: "<f4"}
     widths = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4}
 
@@ -119,6 +123,8 @@ def read_glb(path, coordinates=None):
 
     points, triangles, st, first = [], [], [], 0
     for mesh in root["meshes"]:
+        if name not in mesh.get("name", "").lower():
+            continue
         for primitive in mesh["primitives"]:
             p = read(primitive["attributes"]["POSITION"])
             sets = sorted(name for name in primitive["attributes"] if name.startswith("TEXCOORD_"))
@@ -148,13 +154,16 @@ def figures(points, triangles, st):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("models", nargs="*")
+    parser.add_argument("models", nargs="*", metavar="MODEL")
     parser.add_argument("--threads", type=int, default=2)
     parser.add_argument("--target", default="target/release")
     parser.add_argument("--skip", action="store_true")
+    parser.add_argument("--models", dest="alone", action="store_true")
     args = parser.parse_args()
     made = {"torus knot": knot(500, 50), "bumpy sphere": bumpy_sphere(224, 113), "icosphere": icosphere(5),
             "torus knot, finer": knot(1000, 100)}
+    made["teapot"] = read_model("assets/showcase.glb", "teapot")[:2]
+    made = {} if args.alone else made
     print("| mesh | triangles | texrender: s, charts, utilisation, L², overlaps | xatlas: s, charts, utilisation, L², mirrored |")
     print("|---|---|---|---|")
     with tempfile.TemporaryDirectory() as folder:
@@ -168,7 +177,7 @@ def main():
             command = [os.path.join(args.target, "texrender"), "unwrap", path, "-o", out, "--report", report]
             subprocess.run(command + ["--threads", str(args.threads)], check=True, capture_output=True)
             found = json.load(open(report))
-            points, triangles, st = read_glb(out)
+            points, triangles, st = read_model(out)
             used, stretch, turned = figures(points, triangles, st)
             ours = f"{found['seconds']:.2f}, {found['charts']}, {used:.2f}, {stretch:.4f}, {found['overlaps']}"
             if turned:
@@ -177,7 +186,7 @@ def main():
             if not args.skip:
                 import xatlas
 
-                points, triangles, _ = read_glb(path)
+                points, triangles, _ = read_model(path)
                 atlas = xatlas.Atlas()
                 start = time.monotonic()
                 atlas.add_mesh(points.astype(np.float32), triangles.astype(np.uint32))
