@@ -40,7 +40,7 @@
 //! [`ProbeWeights::Gaussian`] makes it a Gaussian. [`stochastic`] reads one texel of the same, right on average.
 //!
 //! # Sixteen at once: [`packet`]
-//! [`packet::sample`] is [`sample`] at sixteen footprints, in registers, from a [`packet::PackedPyramid`].
+//! [`packet::Taps`] are [`sample`] at sixteen footprints, from a [`packet::PackedPyramid`].
 //!
 //! # A Gaussian pixel: [`ewa`]
 //! Every texel under the footprint's ellipse, weighted by a Gaussian, in three tiers ([`EwaTier`]).
@@ -72,7 +72,7 @@
 //! | [`stochastic`] | unbiased | `tests/properties/stochastic.rs` |
 //! | trilinear lookups | one of those that ±8e-6 of λ can give | `tests/properties/verifier.rs` |
 //! | [`sample`] of 8-bit texels in integers against the exact path | [`sampler::BILINEAR_FIXED_MAX_ERROR`] + 2e-5 | `tests/properties/filtering.rs` |
-//! | [`packet::sample`] against [`sample`] | 1e-3 of the texels' range, the same bits everywhere | `tests/properties/packet.rs` |
+//! | [`packet::Taps::sample`] against [`sample`] | 1e-3 of the texels' range, the same bits everywhere | `tests/properties/packet.rs` |
 //! | [`RipMap`] against its f64 kernel | 1e-5 of the texels' range | `tests/properties/rip_map.rs` |
 //! | [`SummedArea`] against the integral | 1e-6 of the texels' range | `tests/properties/summed_area.rs` |
 //! | continuity over derivatives | ≤ 1/255 per 1e-3 step | `tests/properties/filtering.rs` |
@@ -112,6 +112,8 @@ pub use lod::{LOD_MAX_ABS_ERROR, LodRule, lod};
 pub use probes::ProbeWeights;
 pub use pyramid::{Content, Pyramid};
 pub use rip_map::RipMap;
-pub use sample::{MAX_ANISOTROPY, MipFilter, SamplerState, sample, sample_with_lod};
+pub use sample::{
+    LEAST_MIP_BAND, MAX_ANISOTROPY, MipFilter, SamplerState, sample, sample_with_lod,
+};
 pub use stochastic::{blue_noise, stochastic};
 pub use summed_area::SummedArea;

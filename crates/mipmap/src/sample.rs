@@ -10,6 +10,9 @@ use crate::stochastic::picks_first;
 /// The greatest anisotropy that a lookup follows, whatever its state asks for.
 pub const MAX_ANISOTROPY: f32 = 64.0;
 
+/// The least [`SamplerState::mip_band`].
+pub const LEAST_MIP_BAND: f32 = 1.0 / 64.0;
+
 /// How the levels of a pyramid are used when a texture is minified.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum MipFilter {
@@ -36,6 +39,11 @@ pub struct SamplerState {
     pub minify: Filter,
     /// How levels are chosen where λ > 0.
     pub mip: MipFilter,
+    /// The part of a level's range over which [`MipFilter::Linear`] blends it with the next, about the middle: 1 is
+    /// trilinear filtering; less reads one level alone where λ is near a whole number, a quarter of the lookups for
+    /// ¾, at little error beside that of the levels themselves. Below [`LEAST_MIP_BAND`] counts as that, above 1 and
+    /// NaN as 1.
+    pub mip_band: f32,
     /// Which lengths of the footprint count as its axes.
     pub lod_rule: LodRule,
     /// Added to λ: negative is sharper. NaN counts as 0.
@@ -67,6 +75,13 @@ impl SamplerState {
         biased.min(self.lod_range[1]).max(self.lod_range[0])
     }
 
+    /// 1 over the band in which levels are blended: 1 and more.
+    #[inline]
+    pub(crate) fn blend_slope(&self) -> f32 {
+        // `min` turns NaN into 1.
+        1.0 / f32::min(self.mip_band, 1.0).max(LEAST_MIP_BAND)
+    }
+
     /// Whether λ ≤ 0 before bias and limits is λ ≤ 0 after them.
     #[inline]
     fn keeps_magnification(&self) -> bool {
@@ -82,6 +97,7 @@ impl Default for SamplerState {
             magnify: Filter::Bilinear,
             minify: Filter::Bilinear,
             mip: MipFilter::Linear,
+            mip_band: 1.0,
             lod_rule: LodRule::Exact,
             lod_bias: 0.0,
             lod_range: [f32::NEG_INFINITY, f32::INFINITY],
@@ -224,7 +240,7 @@ impl Plan {
         } else {
             state.magnify
         };
-        let levels = Levels::at(lambda, pyramid.levels(), state.mip);
+        let levels = Levels::at(lambda, pyramid.levels(), state);
 
         // A level of one texel gives that texel wherever a probe stands.
         let bordered = state.address.modes.contains(&AddressMode::ClampToBorder);
@@ -366,9 +382,9 @@ impl Levels {
         clippy::cast_possible_truncation,
         reason = "0 ≤ lod < count, and truncation is the floor of it"
     )]
-    fn at(lambda: f32, count: u32, mip: MipFilter) -> Self {
+    fn at(lambda: f32, count: u32, state: &SamplerState) -> Self {
         let lod = lambda.max(0.0).min((count - 1) as f32);
-        match mip {
+        match state.mip {
             MipFilter::None => Self::one(0),
             MipFilter::Nearest => {
                 // ⌈x⌉ − 1 for x = λ + ½ > 0: the floor, less one on the integers.
@@ -378,9 +394,20 @@ impl Levels {
             }
             MipFilter::Linear => {
                 let fine = lod as u32;
-                Self {
-                    fine,
-                    fraction: lod - fine as f32,
+                let slope = state.blend_slope();
+                let fraction = (lod - fine as f32 - 0.5) * slope + 0.5;
+                if slope == 1.0 {
+                    Self {
+                        fine,
+                        fraction: lod - fine as f32,
+                    }
+                } else if fraction >= 1.0 {
+                    Self::one(fine + 1)
+                } else {
+                    Self {
+                        fine,
+                        fraction: fraction.max(0.0),
+                    }
                 }
             }
         }
@@ -417,7 +444,13 @@ mod tests {
 
     #[test]
     fn the_nearest_level_changes_after_the_half() {
-        let level = |lambda| Levels::at(lambda, 5, MipFilter::Nearest).fine;
+        let level = |lambda| {
+            let state = SamplerState {
+                mip: MipFilter::Nearest,
+                ..SamplerState::default()
+            };
+            Levels::at(lambda, 5, &state).fine
+        };
         assert_eq!(
             [0.0, 0.5, 0.51, 1.5, 1.6, 9.0, -3.0].map(level),
             [0, 0, 1, 1, 2, 4, 0]
@@ -426,7 +459,7 @@ mod tests {
 
     #[test]
     fn odd_lambda_is_clamped_to_the_levels() {
-        let linear = |lambda| Levels::at(lambda, 5, MipFilter::Linear);
+        let linear = |lambda| Levels::at(lambda, 5, &SamplerState::default());
         assert_eq!(
             linear(f32::INFINITY),
             Levels {
@@ -448,5 +481,27 @@ mod tests {
                 fraction: 0.25
             }
         );
+    }
+
+    #[test]
+    fn outside_the_band_one_level_answers() {
+        let state = SamplerState {
+            mip_band: 0.5,
+            ..SamplerState::default()
+        };
+        let lod = |lambda| Levels::at(lambda, 5, &state).lod();
+        let lambdas = [0.0, 1.0, 1.25, 1.375, 1.5, 1.75, 1.9, 3.9, 4.0];
+        assert_eq!(
+            lambdas.map(lod),
+            [0.0, 1.0, 1.0, 1.25, 1.5, 2.0, 2.0, 4.0, 4.0]
+        );
+        // What is no band is trilinear filtering, or nearly a step.
+        let odd = |mip_band| {
+            let state = SamplerState { mip_band, ..state };
+            [1.3, 1.6].map(|lambda| Levels::at(lambda, 5, &state).lod())
+        };
+        assert_eq!(odd(f32::NAN), [1.3, 1.6]);
+        assert_eq!(odd(9.0), [1.3, 1.6]);
+        assert_eq!(odd(-1.0), [1.0, 2.0]);
     }
 }

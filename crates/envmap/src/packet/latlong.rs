@@ -4,7 +4,7 @@ use core::f32::consts::{PI, TAU};
 
 use fearless_simd::{ExtractToken, Select, Simd, SimdBase, SimdFloat, SimdMask, f32x16};
 use glam::Vec3;
-use mipmap::packet::{PackedPyramid, PacketFootprint};
+use mipmap::packet::{PackedPyramid, PacketFootprint, Taps};
 use shading::packet::{Vec3x16, at_least_zero, atan2};
 
 use crate::LatLong;
@@ -33,12 +33,13 @@ impl PackedLatLong {
         self.texels.byte_len()
     }
 
-    /// [`LatLong::radiance_filtered`] for sixteen unit directions.
+    /// [`LatLong::radiance_filtered`] for sixteen unit directions. `taps`: memory to use, whatever it holds.
     #[inline(always)]
     #[must_use]
     pub fn radiance_filtered<S: Simd>(
         &self,
         simd: S,
+        taps: &mut Taps,
         direction: Vec3x16<S>,
         ddx: Vec3x16<S>,
         ddy: Vec3x16<S>,
@@ -56,7 +57,8 @@ impl PackedLatLong {
             ds_dy,
             dt_dy,
         };
-        let [r, g, b, _] = mipmap::packet::sample(simd, &self.texels, &sampler_state(), &footprint);
+        taps.find(simd, &self.texels, &sampler_state(), &footprint);
+        let [r, g, b, _] = taps.sample(simd, &self.texels);
         self.towards_pole(t, Vec3x16::new(r, g, b))
     }
 

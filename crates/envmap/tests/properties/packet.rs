@@ -99,7 +99,7 @@ proptest! {
             dispatch!(level, simd => {
                 let lanes = |of: &dyn Fn(Vec3) -> Vec3| Vec3x16::from_lanes(simd, &directions.map(of));
                 let (dx, dy) = (lanes(&|d| changes(d)[0]), lanes(&|d| changes(d)[1]));
-                let found = packed.radiance_filtered(simd, lanes(&|d| d), dx, dy);
+                let found = packed.radiance_filtered(simd, &mut mipmap::packet::Taps::default(), lanes(&|d| d), dx, dy);
                 std::array::from_fn(|lane| found.lane(lane))
             })
         };

@@ -57,8 +57,7 @@ impl PackedPyramid {
             places.push(Place {
                 width: texture.size().x as f32 * units,
                 height: texture.size().y as f32 * units,
-                column: corner.x + 1,
-                row: corner.y + 1,
+                origin: corner.y * stride + corner.x,
             });
         }
         Self {
@@ -98,6 +97,13 @@ impl PackedPyramid {
     #[must_use]
     pub fn reduce<S: Simd>(&self, s: [f64x8<S>; 2], t: [f64x8<S>; 2]) -> (f32x16<S>, f32x16<S>) {
         (reduced(self.modes[0], s), reduced(self.modes[1], t))
+    }
+
+    /// Whether the taps of one are those of the other: the same size, levels and address modes.
+    #[must_use]
+    pub fn is_alike(&self, other: &Self) -> bool {
+        let shape = |of: &Self| (of.size, of.places.len(), of.modes, of.sheet.stride());
+        shape(self) == shape(other)
     }
 
     #[inline(always)]
@@ -147,9 +153,8 @@ pub(super) struct Placed<S: Simd> {
     /// Width and height, in units of 2⁻ᶠ texel: [`PackedPyramid::fraction_bits`].
     pub(super) width: f32x16<S>,
     pub(super) height: f32x16<S>,
-    /// Column and row of texel (0, 0).
-    pub(super) column: u32x16<S>,
-    pub(super) row: u32x16<S>,
+    /// Where its ring begins.
+    pub(super) origin: u32x16<S>,
 }
 
 /// The same, of one level.
@@ -157,24 +162,43 @@ pub(super) struct Placed<S: Simd> {
 struct Place {
     width: f32,
     height: f32,
-    column: u32,
-    row: u32,
+    origin: u32,
+}
+
+impl Place {
+    #[inline(always)]
+    fn everywhere<S: Simd>(&self, simd: S) -> Placed<S> {
+        Placed {
+            width: f32x16::splat(simd, self.width),
+            height: f32x16::splat(simd, self.height),
+            origin: u32x16::splat(simd, self.origin),
+        }
+    }
 }
 
 impl PackedPyramid {
-    /// Where each lane's level lies; whole numbers below [`Self::levels`].
+    /// Where each lane's level lies, a whole number below [`Self::levels`], and the next coarser one, if there is one.
     #[inline(always)]
-    pub(super) fn placed<S: Simd>(&self, simd: S, level: f32x16<S>) -> Placed<S> {
+    pub(super) fn placed<S: Simd>(&self, simd: S, level: f32x16<S>) -> [Placed<S>; 2] {
         let first = level[0];
         if level.simd_eq(f32x16::splat(simd, first)).all_true() {
-            let place = &self.places[level_index(first)];
-            return Placed {
-                width: f32x16::splat(simd, place.width),
-                height: f32x16::splat(simd, place.height),
-                column: u32x16::splat(simd, place.column),
-                row: u32x16::splat(simd, place.row),
-            };
+            let index = level_index(first);
+            let next = (index + 1).min(self.places.len() - 1);
+            return [
+                self.places[index].everywhere(simd),
+                self.places[next].everywhere(simd),
+            ];
         }
+        let last = f32x16::splat(simd, (self.places.len() - 1) as f32);
+        [
+            self.placed_each(simd, level),
+            self.placed_each(simd, (level + 1.0).min(last)),
+        ]
+    }
+
+    /// Where levels lie that differ from lane to lane.
+    #[inline(always)]
+    fn placed_each<S: Simd>(&self, simd: S, level: f32x16<S>) -> Placed<S> {
         // 2⁻ᵏ by its exponent.
         let w = f32x16::splat(simd, self.size.x as f32);
         let h = f32x16::splat(simd, self.size.y as f32);
@@ -183,13 +207,14 @@ impl PackedPyramid {
         let exponent = u32x16::splat(simd, 127) - index;
         let part: f32x16<S> = (exponent << 23).bitcast();
         let base = index.simd_eq(u32x16::splat(simd, 0));
-        let row = (h - h * part * 2.0).floor() + (level * 4.0 - 3.0);
+        let row = (h - h * part * 2.0).floor() + (level * 4.0 - 4.0);
         let units = (1u32 << self.fraction_bits) as f32;
+        let beside = u32x16::truncate_from(row.max(f32x16::splat(simd, 0.0))) * self.sheet.stride()
+            + (self.size.x + 2);
         Placed {
             width: (w * part).floor().max(one) * units,
             height: (h * part).floor().max(one) * units,
-            column: base.select(u32x16::splat(simd, 1), u32x16::splat(simd, self.size.x + 3)),
-            row: base.select(u32x16::splat(simd, 1), u32x16::truncate_from(row.max(one))),
+            origin: base.select(u32x16::splat(simd, 0), beside),
         }
     }
 

@@ -1,13 +1,14 @@
 //! Sixteen filtered lookups at once.
 //!
 //! [`PackedPyramid`] is a pyramid laid out for them: all levels on one sheet, each in a ring of what its address
-//! modes find beyond the border. [`sample`] is the packet twin of [`crate::sample`], [`sample_codes`] the same rounded
-//! to 8-bit RGBA.
+//! modes find beyond the border. [`Taps`] are the texels that sixteen footprints read and their weights:
+//! [`Taps::find`] and [`Taps::sample`] are the packet twin of [`crate::sample`], [`Taps::write_codes`] the same rounded to
+//! 8-bit RGBA.
 //!
 //! ```
 //! use fearless_simd::{Level, dispatch, f32x16, prelude::*};
 //! use glam::UVec2;
-//! use mipmap::packet::{PackedPyramid, PacketFootprint, sample_codes};
+//! use mipmap::packet::{PackedPyramid, PacketFootprint, Taps};
 //! use mipmap::{Content, Pyramid, SamplerState};
 //! use sampler::{Addressing, Texels, Texture, Transfer};
 //!
@@ -19,7 +20,11 @@
 //!     let footprint = PacketFootprint {
 //!         s: zero, t: zero, ds_dx: far, dt_dx: zero, ds_dy: zero, dt_dy: far,
 //!     };
-//!     sample_codes(simd, &packed, &SamplerState::default(), &footprint).to_array()
+//!     let mut taps = Taps::default();
+//!     taps.find(simd, &packed, &SamplerState::default(), &footprint);
+//!     let mut codes = [0; 16];
+//!     taps.write_codes(simd, &packed, &mut codes);
+//!     codes
 //! });
 //! assert_eq!(codes, [u32::from_le_bytes([100, 100, 100, 255]); 16]);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
@@ -30,16 +35,17 @@
 //! where coordinates are small; what a coordinate of f32 resolves, 2⁻²⁴ of a texture, comes on top. The bits are the
 //! same on every instruction set. `tests/properties/packet.rs`.
 
+mod course;
+mod finish;
 mod layout;
-mod lookup;
 mod plan;
+mod taps;
 
-use fearless_simd::{Simd, f32x16, u32x16};
+use fearless_simd::{Simd, f32x16};
 use sampler::Filter;
-use sampler::packet::{SheetTexels, Sums8, Sums16, SumsFloat, channels, codes};
 
 pub use layout::PackedPyramid;
-use lookup::{Codes, Colours};
+pub use taps::Taps;
 
 use crate::probes::ProbeWeights;
 use crate::sample::SamplerState;
@@ -70,70 +76,4 @@ pub fn reads(state: &SamplerState) -> bool {
     linear(state.magnify)
         && linear(state.minify)
         && (one_probe || state.probe_weights == ProbeWeights::Equal)
-}
-
-/// The colours under sixteen footprints, a packet a channel: as [`crate::sample`], for what [`reads`] accepts.
-///
-/// Other filters are read as the nearest that it accepts: bicubic as bilinear, Gaussian probes as equal ones.
-///
-/// # Accuracy
-/// See the [module](self).
-#[inline(always)]
-pub fn sample<S: Simd>(
-    simd: S,
-    texture: &PackedPyramid,
-    state: &SamplerState,
-    footprint: &PacketFootprint<S>,
-) -> [f32x16<S>; 4] {
-    channels(filtered(simd, texture, state, footprint))
-}
-
-/// As [`sample`], each channel clamped to 0..=1 and rounded to the nearest 8-bit code, r in the lowest byte.
-#[inline(always)]
-pub fn sample_codes<S: Simd>(
-    simd: S,
-    texture: &PackedPyramid,
-    state: &SamplerState,
-    footprint: &PacketFootprint<S>,
-) -> u32x16<S> {
-    if let SheetTexels::Codes8(texels) = texture.sheet().texels()
-        && let Some(codes) = lookup::picked(simd, texture, texels, state, footprint)
-    {
-        return codes;
-    }
-    if let SheetTexels::Codes8(texels) = texture.sheet().texels() {
-        return simd.vectorize(
-            #[inline(always)]
-            || lookup::filtered::<S, Sums8<S>, Codes>(simd, texture, texels, state, footprint),
-        );
-    }
-    codes(simd, filtered(simd, texture, state, footprint))
-}
-
-/// One function a kind of texel, however many callers: inlined it is 10 KiB of code each.
-#[inline(always)]
-fn filtered<S: Simd>(
-    simd: S,
-    texture: &PackedPyramid,
-    state: &SamplerState,
-    footprint: &PacketFootprint<S>,
-) -> [f32x16<S>; 4] {
-    match texture.sheet().texels() {
-        SheetTexels::Codes8(texels) => simd.vectorize(
-            #[inline(always)]
-            || lookup::filtered::<S, Sums8<S>, Colours>(simd, texture, texels, state, footprint),
-        ),
-        SheetTexels::Codes16(texels) => simd.vectorize(
-            #[inline(always)]
-            || lookup::filtered::<S, Sums16<S>, Colours>(simd, texture, texels, state, footprint),
-        ),
-        SheetTexels::Floats(texels) => simd.vectorize(
-            #[inline(always)]
-            || {
-                lookup::filtered::<S, SumsFloat<S>, Colours>(
-                    simd, texture, texels, state, footprint,
-                )
-            },
-        ),
-    }
 }

@@ -16,8 +16,11 @@ pub(super) struct Plan<S: Simd> {
     pub(super) fraction: f32x16<S>,
     /// Whether λ > 0.
     pub(super) minified: mask32x16<S>,
-    /// The probes; none where every lane has one.
-    pub(super) line: Option<Line<S>>,
+    /// η: 1 for one probe.
+    eta: f32x16<S>,
+    ellipse: Ellipse<S>,
+    /// Whether a lane has more than one probe.
+    pub(super) is_line: bool,
 }
 
 /// A line of probes about each lane's middle.
@@ -38,11 +41,14 @@ pub(super) struct Line<S: Simd> {
 const FARTHEST_STEP: f32 = 1_048_576.0;
 
 /// The footprint's ellipse in texels.
+#[derive(Clone, Copy)]
 struct Ellipse<S: Simd> {
+    /// Lanes whose footprint is finite.
+    bounded: mask32x16<S>,
     /// Square of the longer axis.
     major_squared: f32x16<S>,
-    /// Longer over shorter axis, 1 and more.
-    aspect: f32x16<S>,
+    /// The axes' product; by [`LodRule::MaxLength`] the square of the shorter vector.
+    determinant: f32x16<S>,
     /// A vector along the longer axis, of any length.
     along: [f32x16<S>; 2],
 }
@@ -64,46 +70,48 @@ impl<S: Simd> Plan<S> {
                 fine: zero,
                 fraction: zero,
                 minified: zero.simd_eq(one),
-                line: None,
+                eta: one,
+                ellipse: Ellipse {
+                    bounded: zero.simd_eq(zero),
+                    major_squared: one,
+                    determinant: one,
+                    along: [zero; 2],
+                },
+                is_line: false,
             };
         }
 
         let ellipse = Ellipse::of(simd, texture, state.lod_rule, footprint);
-        let bounded = ellipse.major_squared.simd_le(f32x16::splat(simd, f32::MAX));
+        let mut lambda = packet_log2(simd, ellipse.major_squared) * 0.5;
         // η, and what of the aspect it leaves.
-        let eta = if max_anisotropy == 1.0 {
-            one
+        let mut eta = one;
+        if max_anisotropy == 1.0 {
+            if state.lod_rule == LodRule::Exact {
+                let log_minor = packet_log2(simd, ellipse.determinant);
+                lambda -= sharpened(simd, lambda + lambda - log_minor);
+            }
         } else {
-            let eta = followed(simd, &ellipse, max_anisotropy, state.magnify);
-            bounded.select(eta, one)
-        };
-        let half = f32x16::splat(simd, 0.5);
-        let mut lambda = packet_log2(simd, ellipse.major_squared) * half;
-        if max_anisotropy > 1.0 {
-            lambda -= packet_log2(simd, eta);
+            let aspect = ellipse.aspect(state.lod_rule);
+            eta = followed(simd, &ellipse, aspect, max_anisotropy, state.magnify);
+            eta = ellipse.bounded.select(eta, one);
+            let log_eta = packet_log2(simd, eta);
+            lambda -= log_eta;
+            if state.lod_rule == LodRule::Exact {
+                lambda -= sharpened(simd, packet_log2(simd, aspect) - log_eta);
+            }
         }
-        if state.lod_rule == LodRule::Exact {
-            let cut = if max_anisotropy == 1.0 {
-                ellipse.aspect
-            } else {
-                ellipse.aspect / eta
-            };
-            let cut = cut.min(f32x16::splat(simd, 2.0)).max(one);
-            lambda -= packet_log2(simd, cut) * CUT_SHARPENING;
-        }
-        let lambda = bounded.select(lambda, f32x16::splat(simd, f32::INFINITY));
+        let lambda = ellipse
+            .bounded
+            .select(lambda, f32x16::splat(simd, f32::INFINITY));
         let lambda = limited(simd, state, lambda);
-        let (fine, fraction) = levels(simd, texture, state.mip, lambda);
-        let line = if max_anisotropy > 1.0 && eta.simd_gt(one).any_true() {
-            Some(Line::of(simd, texture, &ellipse, eta))
-        } else {
-            None
-        };
+        let (fine, fraction) = levels(simd, texture, state, lambda);
         Self {
             fine,
             fraction,
             minified: lambda.simd_gt(zero),
-            line,
+            eta,
+            ellipse,
+            is_line: max_anisotropy > 1.0 && eta.simd_gt(one).any_true(),
         }
     }
 }
@@ -114,16 +122,15 @@ impl<S: Simd> Ellipse<S> {
         let [w, h] = [texture.size().x as f32, texture.size().y as f32];
         let (ax, ay) = (footprint.ds_dx * w, footprint.dt_dx * h);
         let (bx, by) = (footprint.ds_dy * w, footprint.dt_dy * h);
-        let one = f32x16::splat(simd, 1.0);
         let least = f32x16::splat(simd, f32::MIN_POSITIVE);
+        let most = f32x16::splat(simd, f32::MAX);
         if rule == LodRule::MaxLength {
             let (aa, bb) = (ax * ax + ay * ay, bx * bx + by * by);
             let first = aa.simd_ge(bb);
-            let major_squared = known_or_infinite(simd, aa, bb).max(least);
-            let minor_squared = aa.min(bb).max(least);
             return Self {
-                major_squared,
-                aspect: (major_squared / minor_squared).max(one).sqrt(),
+                bounded: aa.simd_le(most) & bb.simd_le(most),
+                major_squared: aa.max(bb).max(least),
+                determinant: aa.min(bb).max(least),
                 along: [first.select(ax, bx), first.select(ay, by)],
             };
         }
@@ -132,25 +139,35 @@ impl<S: Simd> Ellipse<S> {
         let xy = ax * ay + bx * by;
         let half_difference = (xx - yy) * 0.5;
         let root = (half_difference * half_difference + xy * xy).sqrt();
-        let major_squared = ((xx + yy) * 0.5 + root).max(least);
-        let determinant = (ax * by - ay * bx).abs().max(least);
-        let wide = half_difference.simd_ge(f32x16::splat(simd, 0.0));
+        let major_squared = (xx + yy) * 0.5 + root;
+        let wide = half_difference.simd_ge(0.0);
         Self {
-            major_squared: known_or_infinite(simd, major_squared, root),
-            aspect: (major_squared / determinant).max(one),
+            bounded: major_squared.simd_le(most),
+            major_squared: major_squared.max(least),
+            determinant: (ax * by - ay * bx).abs().max(least),
             along: [
                 wide.select(half_difference + root, xy),
                 wide.select(xy, root - half_difference),
             ],
         }
     }
+
+    /// The longer over the shorter axis, 1 and more.
+    #[inline(always)]
+    fn aspect(&self, rule: LodRule) -> f32x16<S> {
+        let ratio = (self.major_squared / self.determinant).max(1.0);
+        match rule {
+            LodRule::Exact => ratio,
+            LodRule::MaxLength => ratio.sqrt(),
+        }
+    }
 }
 
-/// The greater; ∞ where either is NaN.
+/// By how much λ is less where an aspect of 2ˣ is cut short.
 #[inline(always)]
-fn known_or_infinite<S: Simd>(simd: S, a: f32x16<S>, b: f32x16<S>) -> f32x16<S> {
-    let known = a.simd_eq(a) & b.simd_eq(b);
-    known.select(a.max(b), f32x16::splat(simd, f32::INFINITY))
+fn sharpened<S: Simd>(simd: S, log_cut: f32x16<S>) -> f32x16<S> {
+    let (zero, one) = (f32x16::splat(simd, 0.0), f32x16::splat(simd, 1.0));
+    log_cut.min(one).max(zero) * CUT_SHARPENING
 }
 
 /// η: the aspect that probes follow.
@@ -158,6 +175,7 @@ fn known_or_infinite<S: Simd>(simd: S, a: f32x16<S>, b: f32x16<S>) -> f32x16<S> 
 fn followed<S: Simd>(
     simd: S,
     ellipse: &Ellipse<S>,
+    aspect: f32x16<S>,
     max_anisotropy: f32,
     magnify: Filter,
 ) -> f32x16<S> {
@@ -167,7 +185,6 @@ fn followed<S: Simd>(
         Filter::Nearest => major,
         Filter::Bilinear | Filter::Bicubic(_) => major * 2.0,
     };
-    let aspect = ellipse.aspect;
     let nearly_round = aspect.simd_lt(f32x16::splat(simd, 1.6));
     let needed = nearly_round.select((aspect * 1.5 - 0.8).max(one), aspect);
     needed
@@ -178,50 +195,54 @@ fn followed<S: Simd>(
 /// λ with bias and limits; NaN never passes.
 #[inline(always)]
 fn limited<S: Simd>(simd: S, state: &SamplerState, lambda: f32x16<S>) -> f32x16<S> {
-    let infinite = f32x16::splat(simd, f32::INFINITY);
-    let bias = if state.lod_bias.is_nan() {
-        0.0
-    } else {
-        state.lod_bias
-    };
-    let biased = lambda + bias;
-    let biased = biased.simd_eq(biased).select(biased, infinite);
-    let [least, greatest] = state.lod_range;
-    let below = if greatest.is_nan() {
-        biased
-    } else {
-        biased.min(f32x16::splat(simd, greatest))
-    };
-    if least.is_nan() {
-        below
-    } else {
-        below.max(f32x16::splat(simd, least))
+    let mut lod = lambda;
+    if !state.lod_bias.is_nan() && state.lod_bias != 0.0 {
+        let biased = lambda + state.lod_bias;
+        let infinite = f32x16::splat(simd, f32::INFINITY);
+        lod = biased.simd_eq(biased).select(biased, infinite);
     }
+    let [least, greatest] = state.lod_range;
+    if greatest < f32::INFINITY {
+        lod = lod.min(f32x16::splat(simd, greatest));
+    }
+    if least > f32::NEG_INFINITY {
+        lod = lod.max(f32x16::splat(simd, least));
+    }
+    lod
 }
 
 #[inline(always)]
 fn levels<S: Simd>(
     simd: S,
     texture: &PackedPyramid,
-    mip: MipFilter,
+    state: &SamplerState,
     lambda: f32x16<S>,
 ) -> (f32x16<S>, f32x16<S>) {
     let zero = f32x16::splat(simd, 0.0);
     let last = f32x16::splat(simd, (texture.levels() - 1) as f32);
     let lod = lambda.max(zero).min(last);
-    match mip {
+    match state.mip {
         MipFilter::None => (zero, zero),
         MipFilter::Nearest => (((lod + 0.5).ceil() - 1.0).max(zero), zero),
         MipFilter::Linear => {
             let fine = lod.floor();
-            (fine, lod - fine)
+            let fraction = lod - fine;
+            let slope = state.blend_slope();
+            if slope == 1.0 {
+                return (fine, fraction);
+            }
+            let one = f32x16::splat(simd, 1.0);
+            let banded = ((fraction - 0.5) * slope + 0.5).max(zero);
+            let next = banded.simd_ge(one);
+            (next.select(fine + 1.0, fine), next.select(zero, banded))
         }
     }
 }
 
 impl<S: Simd> Line<S> {
     #[inline(always)]
-    fn of(simd: S, texture: &PackedPyramid, ellipse: &Ellipse<S>, eta: f32x16<S>) -> Self {
+    pub(super) fn of(simd: S, texture: &PackedPyramid, plan: &Plan<S>) -> Self {
+        let (ellipse, eta) = (&plan.ellipse, plan.eta);
         let zero = f32x16::splat(simd, 0.0);
         let one = f32x16::splat(simd, 1.0);
         let two = f32x16::splat(simd, 2.0);
@@ -229,7 +250,7 @@ impl<S: Simd> Line<S> {
         let [x, y] = ellipse.along;
         let squared = x * x + y * y;
         let some = squared.simd_gt(zero) & squared.simd_le(f32x16::splat(simd, f32::MAX));
-        let length = (ellipse.major_squared / some.select(squared, one)).sqrt() / eta;
+        let length = (ellipse.major_squared / (some.select(squared, one) * eta * eta)).sqrt();
         let [w, h] = [texture.size().x as f32, texture.size().y as f32];
         let (step_s, step_t) = (x * length * (1.0 / w), y * length * (1.0 / h));
         // Beyond so many textures the coarsest level answers, wherever a probe stands.

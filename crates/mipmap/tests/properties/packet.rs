@@ -2,7 +2,7 @@
 
 use fearless_simd::{Level, Simd, dispatch, f32x16, prelude::*};
 use glam::{DVec2, Vec2, Vec4};
-use mipmap::packet::{self, PackedPyramid, PacketFootprint};
+use mipmap::packet::{PackedPyramid, PacketFootprint, Taps};
 use mipmap::{Content, Footprint, LodRule, MipFilter, ProbeWeights, Pyramid, SamplerState, sample};
 use proptest::prelude::*;
 use sampler::{AddressMode, Filter, Precision, Texels, Transfer};
@@ -43,13 +43,19 @@ fn packet_of<S: Simd>(simd: S, lanes: &Lanes) -> PacketFootprint<S> {
 
 fn colours(level: Level, packed: &PackedPyramid, state: &SamplerState, lanes: &Lanes) -> Colours {
     dispatch!(level, simd => {
-        packet::sample(simd, packed, state, &packet_of(simd, lanes)).map(|c| c.to_array())
+        let mut taps = Taps::default();
+        taps.find(simd, packed, state, &packet_of(simd, lanes));
+        taps.sample(simd, packed).map(|c| c.to_array())
     })
 }
 
 fn codes(level: Level, packed: &PackedPyramid, state: &SamplerState, lanes: &Lanes) -> [u32; 16] {
     dispatch!(level, simd => {
-        packet::sample_codes(simd, packed, state, &packet_of(simd, lanes)).to_array()
+        let mut taps = Taps::default();
+        taps.find(simd, packed, state, &packet_of(simd, lanes));
+        let mut codes = [0; 16];
+        taps.write_codes(simd, packed, &mut codes);
+        codes
     })
 }
 
@@ -65,7 +71,7 @@ fn lanes_of(footprints: &[Footprint]) -> Lanes {
     ]
 }
 
-/// What [`packet::reads`] accepts.
+/// What [`mipmap::packet::reads`] accepts.
 fn readable() -> impl Strategy<Value = SamplerState> {
     state().prop_map(|state| {
         let plain = |filter| match filter {
@@ -199,7 +205,11 @@ fn far_coordinates_keep_their_texel() {
         let (s, t) = packed.reduce([half(0, |p| p.x), half(8, |p| p.x)], [half(0, |p| p.y), half(8, |p| p.y)]);
         let zero = f32x16::splat(simd, 0.0);
         let footprint = PacketFootprint { s, t, ds_dx: zero, dt_dx: zero, ds_dy: zero, dt_dy: zero };
-        packet::sample_codes(simd, &packed, &state, &footprint).to_array()
+        let mut taps = Taps::default();
+        taps.find(simd, &packed, &state, &footprint);
+        let mut codes = [0; 16];
+        taps.write_codes(simd, &packed, &mut codes);
+        codes
     });
     for (lane, code) in got.into_iter().enumerate() {
         let footprint = Footprint {

@@ -124,7 +124,8 @@ pub(crate) fn state() -> impl Strategy<Value = SamplerState> {
         prop_oneof![Just(f32::NEG_INFINITY), odd()],
         prop_oneof![Just(f32::INFINITY), odd()],
     );
-    let choices = (precision, rule, weights, levels);
+    let band = prop_oneof![Just(1.0f32), 0.0..1.0f32, any::<f32>()];
+    let choices = (precision, rule, weights, (levels, band));
     (mode(), mode(), filter(), filter(), mip, anisotropy, choices).prop_map(
         |(
             s,
@@ -133,13 +134,14 @@ pub(crate) fn state() -> impl Strategy<Value = SamplerState> {
             minify,
             mip,
             max_anisotropy,
-            (precision, lod_rule, probe_weights, levels),
+            (precision, lod_rule, probe_weights, (levels, mip_band)),
         )| SamplerState {
             address: [s, t].into(),
             precision,
             magnify,
             minify,
             mip,
+            mip_band,
             lod_rule,
             lod_bias: levels.0,
             lod_range: [levels.1, levels.2],

@@ -12,16 +12,16 @@ use fearless_simd::{Simd, u32x16};
 
 use super::LANES;
 
-/// 2×2 texels for each lane.
+/// What stands at each lane's offset, right of it, and `stride` further.
 pub(super) struct Quads<'a, T> {
     texels: &'a [T],
     stride: usize,
     /// With the row below and the column beside it, each is within `texels`.
-    offsets: [u32; LANES],
+    offsets: &'a [u32; LANES],
 }
 
 impl<'a, T: Copy> Quads<'a, T> {
-    /// The texels at each lane's offset, to the right of it, and `stride` further.
+    /// Those of texels in rows: two rows of two.
     ///
     /// # Panics
     /// If a lane's texels are not all among `texels`.
@@ -30,7 +30,7 @@ impl<'a, T: Copy> Quads<'a, T> {
         simd: S,
         texels: &'a [T],
         stride: usize,
-        offsets: u32x16<S>,
+        offsets: &'a [u32; LANES],
     ) -> Self {
         let last = texels
             .len()
@@ -38,68 +38,35 @@ impl<'a, T: Copy> Quads<'a, T> {
             .and_then(|last| u32::try_from(last).ok());
         let inside = last.is_some_and(
             #[inline(always)]
-            |last| offsets.simd_le(u32x16::splat(simd, last)).all_true(),
+            |last| u32x16::from_slice(simd, offsets).simd_le(last).all_true(),
         );
         assert!(inside, "texels beyond the sheet");
         Self {
             texels,
             stride,
-            offsets: offsets.to_array(),
+            offsets,
         }
     }
 
-    /// A texel of the lane's upper row: 0 the left one, 1 the right.
+    /// Both of the lane's upper row, the left one first.
     #[inline(always)]
-    pub(super) fn upper(&self, lane: usize, column: Column) -> T {
-        self.texel(self.offsets[lane] as usize + column as usize)
-    }
-
-    /// A texel of the lane's lower row.
-    #[inline(always)]
-    pub(super) fn lower(&self, lane: usize, column: Column) -> T {
-        self.texel(self.offsets[lane] as usize + self.stride + column as usize)
-    }
-
-    #[inline(always)]
-    fn texel(&self, index: usize) -> T {
-        debug_assert!(index < self.texels.len());
-        // SAFETY: `new` held offset + stride + 2 ≤ len for every lane, and columns are 0 and 1.
-        unsafe { *self.texels.get_unchecked(index) }
-    }
-}
-
-impl Quads<'_, u32> {
-    /// Both texels of the lane's upper row, the left one in the low half.
-    #[inline(always)]
-    pub(super) fn upper_pair(&self, lane: usize) -> u64 {
+    pub(super) fn upper(&self, lane: usize) -> [T; 2] {
         self.pair(self.offsets[lane] as usize)
     }
 
-    /// Both texels of the lane's lower row.
+    /// Both of the lane's lower row.
     #[inline(always)]
-    pub(super) fn lower_pair(&self, lane: usize) -> u64 {
+    pub(super) fn lower(&self, lane: usize) -> [T; 2] {
         self.pair(self.offsets[lane] as usize + self.stride)
     }
 
     /// One load: written as two, the compiler shuffles halves together, which takes longer than the lookup.
     #[inline(always)]
-    fn pair(&self, index: usize) -> u64 {
+    fn pair(&self, index: usize) -> [T; 2] {
         debug_assert!(index + 1 < self.texels.len());
         // SAFETY: `new` held offset + stride + 2 ≤ len for every lane.
         let left = unsafe { self.texels.as_ptr().add(index) };
-        // SAFETY: the texel right of it is among `texels` too, and a u64 may be read from any address.
-        let both = unsafe { left.cast::<u64>().read_unaligned() };
-        if cfg!(target_endian = "big") {
-            both.rotate_left(32)
-        } else {
-            both
-        }
+        // SAFETY: the one right of it is among `texels` too, and an array of them is aligned as they are.
+        unsafe { left.cast::<[T; 2]>().read() }
     }
-}
-
-/// The left or the right texel of a row.
-#[derive(Clone, Copy)]
-pub(super) enum Column {
-    Left = 0,
-    Right = 1,
 }

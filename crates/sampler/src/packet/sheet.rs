@@ -2,6 +2,7 @@
 
 use glam::{UVec2, Vec4};
 
+use super::sums::SIGNED_BY;
 use crate::address::{AddressMode, Addressing};
 use crate::format::{Component, Texels, Transfer};
 use crate::texture::Texture;
@@ -20,9 +21,10 @@ pub struct Sheet {
 /// The texels of a [`Sheet`], decoded to what is proportional to light.
 #[derive(Debug, Clone)]
 pub enum SheetTexels {
-    /// 8-bit codes, r in the lowest byte.
-    Codes8(Vec<u32>),
-    /// 16-bit codes, r in the lowest 16 bits: 16-bit textures, and 8-bit ones whose colour is not linear.
+    /// 8-bit codes, r in the lowest byte: a texel's, and in the upper half those of the texel below it, so that one
+    /// load brings 2×2.
+    Codes8(Vec<u64>),
+    /// 16-bit codes less 2¹⁵, r in the lowest 16 bits: 16-bit textures, and 8-bit ones whose colour is not linear.
     ///
     /// A code is within 2⁻¹⁷ of the sRGB-decoded value it stands for.
     Codes16(Vec<u64>),
@@ -54,32 +56,32 @@ impl Sheet {
     pub fn put(&mut self, texture: &Texture, address: &Addressing<2>, corner: UVec2) {
         let size = texture.size();
         let (stride, width) = (self.stride as usize, size.x as usize + 2);
+        let mut below = Vec::new();
         for (row, j) in (corner.y as usize..).zip(-1..=i64::from(size.y)) {
             let source = address.modes[1].resolve(j, size.y);
             let first = row * stride + corner.x as usize;
+            let row = Row {
+                texture,
+                address,
+                source,
+            };
             match &mut self.texels {
                 SheetTexels::Codes8(codes) => {
-                    let row = Row {
-                        texture,
-                        address,
-                        source,
-                    };
-                    row.put(&mut codes[first..][..width], code8_row, code8);
+                    below.resize(width, 0);
+                    row.put(&mut below, code8_row, code8);
+                    // The first row has none above it, the last one none below.
+                    let above = if j < 0 { first } else { first - stride };
+                    for (code, &lower) in codes[above..][..width].iter_mut().zip(&below) {
+                        *code |= u64::from(lower) << 32;
+                    }
+                    for (code, &upper) in codes[first..][..width].iter_mut().zip(&below) {
+                        *code = u64::from(upper);
+                    }
                 }
                 SheetTexels::Codes16(codes) => {
-                    let row = Row {
-                        texture,
-                        address,
-                        source,
-                    };
                     row.put(&mut codes[first..][..width], code16_row, code16);
                 }
                 SheetTexels::Floats(floats) => {
-                    let row = Row {
-                        texture,
-                        address,
-                        source,
-                    };
                     row.put(&mut floats[first..][..width], float_row, |v| v.to_array());
                 }
             }
@@ -208,6 +210,6 @@ fn code16(colour: Vec4) -> u64 {
 }
 
 fn code16_of(codes: [u16; 4]) -> u64 {
-    let [r, g, b, a] = codes.map(u64::from);
+    let [r, g, b, a] = codes.map(|code| u64::from(code ^ SIGNED_BY));
     r | g << 16 | b << 32 | a << 48
 }

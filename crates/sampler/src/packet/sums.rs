@@ -3,63 +3,53 @@
 use fearless_simd::prelude::*;
 use fearless_simd::{Simd, f32x16, i16x32, i32x16, u8x64, u16x32, u32x16, u64x8};
 
-use super::fetch::Column::{Left, Right};
 use super::fetch::Quads;
 use super::lanes::{channels, repeated, repeated_floats};
+use super::tap::Tap;
 
-/// Bound of the error of one 8-bit lookup, in units of the greatest texel: four weights in units of 2⁻¹⁴, and f32.
-pub const SUMS8_MAX_ERROR: f32 = 1.3e-4;
+/// Bound of the error of one tap, in units of the greatest texel: four weights in units of 2⁻¹⁴, and f32.
+pub const TAP_MAX_ERROR: f32 = 1.3e-4;
 
-/// The weight of 1 in [`Share`] and in [`Sums8`].
+/// The weight of 1.
 pub const ONE: u32 = 1 << ONE_BITS;
 const ONE_BITS: u32 = 14;
 
-/// Where a packet's lookups stand between their texels, and what each counts for, in units of 1/[`ONE`].
-#[derive(Debug, Clone, Copy)]
-pub struct Share<S: Simd> {
-    /// Weight of the right column of texels, 0..=[`ONE`].
-    pub right: u32x16<S>,
-    /// Weight of the lower row, 0..=[`ONE`].
-    pub lower: u32x16<S>,
-    /// What the lookup counts for, 0..=[`ONE`].
-    pub weight: u32x16<S>,
-}
-
-/// Weighted sums over a packet's lookups.
+/// Weighted sums over a packet's taps.
 pub trait Sums<S: Simd>: Copy {
-    /// A texel as a sheet holds it.
+    /// What a sheet holds for a texel.
     type Texel;
 
     /// Nothing added yet.
     fn zero(simd: S) -> Self;
 
-    /// Adds 2×2 texels to each lane's sum: those at its `offset`, to the right of it, and below both.
+    /// Adds a tap's texels to each lane's sum.
+    ///
+    /// After taps that count for 2 in all, [`Self::carry`] makes room for more.
     ///
     /// # Panics
     /// If a lane's texels are not all on the sheet.
-    fn add(
-        &mut self,
-        simd: S,
-        texels: &[Self::Texel],
-        stride: usize,
-        offsets: u32x16<S>,
-        share: &Share<S>,
-    );
+    fn add(&mut self, simd: S, texels: &[Self::Texel], stride: usize, tap: &Tap);
 
-    /// The sums times `scale`, interleaved RGBA: packet g holds lanes 4g to 4g + 3. Codes count as 0..=1.
-    fn texels(self, simd: S, scale: f32x16<S>) -> [f32x16<S>; 4];
+    /// Makes room for more taps, where sums are held in few bits.
+    #[inline(always)]
+    fn carry(&mut self) {}
 
-    /// The sums of lookups that counted for 1 in all, each channel clamped to 0..=1 and rounded to the nearest 8-bit
+    /// The mean of the taps, interleaved RGBA: packet g holds lanes 4g to 4g + 3. Codes count as 0..=1.
+    ///
+    /// `total`: what they counted for in all, in units of 1/[`ONE`].
+    fn texels(self, simd: S, total: u32x16<S>) -> [f32x16<S>; 4];
+
+    /// The mean of taps that counted for 1 in all, each channel clamped to 0..=1 and rounded to the nearest 8-bit
     /// code, r in the lowest byte.
     #[inline(always)]
     fn codes(self, simd: S) -> u32x16<S> {
-        codes(simd, self.texels(simd, f32x16::splat(simd, 1.0)))
+        codes(simd, self.texels(simd, u32x16::splat(simd, ONE)))
     }
 
-    /// The sums times `scale`, a packet a channel.
+    /// The mean of the taps, a packet a channel; `total` as that of [`Self::texels`].
     #[inline(always)]
-    fn channels(self, simd: S, scale: f32x16<S>) -> [f32x16<S>; 4] {
-        channels(self.texels(simd, scale))
+    fn channels(self, simd: S, total: u32x16<S>) -> [f32x16<S>; 4] {
+        channels(self.texels(simd, total))
     }
 }
 
@@ -67,19 +57,24 @@ pub trait Sums<S: Simd>: Copy {
 #[derive(Debug, Clone, Copy)]
 pub struct Sums8<S: Simd>([i32x16<S>; 4]);
 
-/// Sums of 16-bit texels, in f32.
+/// Sums of 16-bit texels: in integers, carried over to f32.
 #[derive(Debug, Clone, Copy)]
-pub struct Sums16<S: Simd>([f32x16<S>; 4]);
+pub struct Sums16<S: Simd> {
+    sums: [i32x16<S>; 4],
+    carried: [f32x16<S>; 4],
+}
 
 /// Sums of f32 texels, in f32.
 #[derive(Debug, Clone, Copy)]
 pub struct SumsFloat<S: Simd>([f32x16<S>; 4]);
 
-/// In each block [r g b a] of one texel and [r g b a] of its right neighbour, twice, to [r r g g b b a a].
-const BESIDE: [u8; 16] = [0, 4, 1, 5, 2, 6, 3, 7, 8, 12, 9, 13, 10, 14, 11, 15];
+/// From the left two texels and the right two, each upper one first, to the four of a channel side by side: the upper
+/// left and right ones, the lower left and right ones.
+const BY_CHANNEL: [u8; 16] = [0, 8, 4, 12, 1, 9, 5, 13, 2, 10, 6, 14, 3, 11, 7, 15];
 
 impl<S: Simd> Sums<S> for Sums8<S> {
-    type Texel = u32;
+    /// A texel in the low half, the one below it in the high half.
+    type Texel = u64;
 
     #[inline(always)]
     fn zero(simd: S) -> Self {
@@ -87,36 +82,20 @@ impl<S: Simd> Sums<S> for Sums8<S> {
     }
 
     #[inline(always)]
-    fn add(
-        &mut self,
-        simd: S,
-        texels: &[u32],
-        stride: usize,
-        offsets: u32x16<S>,
-        share: &Share<S>,
-    ) {
-        let [upper, lower] = integer_weights(share);
-        let (upper, lower) = (repeated(upper), repeated(lower));
-        let quads = Quads::new(simd, texels, stride, offsets);
-        let beside = u8x64::block_splat(BESIDE.simd_into(simd));
-        for half in 0..2 {
-            let mut pairs = [[0u64; 8]; 2];
-            let [upper_pairs, lower_pairs] = &mut pairs;
-            for (lane, (upper, lower)) in upper_pairs.iter_mut().zip(lower_pairs).enumerate() {
-                *upper = quads.upper_pair(8 * half + lane);
-                *lower = quads.lower_pair(8 * half + lane);
+    fn add(&mut self, simd: S, texels: &[u64], stride: usize, tap: &Tap) {
+        let left = repeated(u32x16::from_slice(simd, &tap.left));
+        let right = repeated(u32x16::from_slice(simd, &tap.right));
+        let quads = Quads::new(simd, texels, stride, &tap.offsets);
+        let by_channel = u8x64::block_splat(BY_CHANNEL.simd_into(simd));
+        for group in 0..4 {
+            let mut columns = [[0u64; 2]; 4];
+            for (lane, columns) in columns.iter_mut().enumerate() {
+                *columns = quads.upper(4 * group + lane);
             }
-            for (pairs, weights) in pairs.into_iter().zip([&upper, &lower]) {
-                let bytes: u8x64<S> = u64x8::simd_from(simd, pairs).bitcast();
-                let (low, high): (u16x32<S>, u16x32<S>) =
-                    bytes.swizzle_dyn_within_blocks(beside).widen();
-                for (part, codes) in [low, high].into_iter().enumerate() {
-                    let group = 2 * half + part;
-                    let codes: i16x32<S> = codes.bitcast();
-                    let weights: i16x32<S> = weights[group].bitcast();
-                    self.0[group] += codes.pairwise_dot_product(weights);
-                }
-            }
+            let bytes: u8x64<S> = u64x8::from_slice(simd, columns.as_flattened()).bitcast();
+            let codes: u16x32<S> = bytes.swizzle_dyn_within_blocks(by_channel).bitcast();
+            self.0[group] += dot(codes & 0xff, left[group]);
+            self.0[group] += dot(codes >> 8, right[group]);
         }
     }
 
@@ -128,14 +107,21 @@ impl<S: Simd> Sums<S> for Sums8<S> {
     }
 
     #[inline(always)]
-    fn texels(self, simd: S, scale: f32x16<S>) -> [f32x16<S>; 4] {
-        let scales = repeated_floats(scale * (1.0 / (255.0 * ONE as f32)));
+    fn texels(self, simd: S, total: u32x16<S>) -> [f32x16<S>; 4] {
+        let scales = repeated_floats(f32x16::splat(simd, 1.0 / 255.0) / f32x16::float_from(total));
         let mut texels = [f32x16::splat(simd, 0.0); 4];
         for group in 0..4 {
             texels[group] = f32x16::float_from(self.0[group]) * scales[group];
         }
         texels
     }
+}
+
+/// Sums of neighbouring products.
+#[inline(always)]
+fn dot<S: Simd>(codes: u16x32<S>, weights: u32x16<S>) -> i32x16<S> {
+    let (codes, weights): (i16x32<S>, i16x32<S>) = (codes.bitcast(), weights.bitcast());
+    codes.pairwise_dot_product(weights)
 }
 
 /// A sum in units of 1/[`ONE`] to the nearest code.
@@ -168,103 +154,88 @@ fn packed<S: Simd>(a: u32x16<S>, b: u32x16<S>, c: u32x16<S>, d: u32x16<S>) -> u3
     bytes.bitcast()
 }
 
-/// `weight` times `part`, to the nearest unit.
-#[inline(always)]
-fn part_of<S: Simd>(weight: u32x16<S>, part: u32x16<S>) -> u32x16<S> {
-    (weight * part + ONE / 2) >> ONE_BITS
-}
+/// What a 16-bit code is stored less, so that it is signed.
+pub(super) const SIGNED_BY: u16 = 1 << 15;
 
-/// Weights of the upper and of the lower two texels, the left one's in the low half of a lane. They add up to the
-/// lookup's weight exactly.
-#[inline(always)]
-fn integer_weights<S: Simd>(share: &Share<S>) -> [u32x16<S>; 2] {
-    let lower = part_of(share.weight, share.lower);
-    let upper = share.weight - lower;
-    [
-        left_and_right(upper, part_of(upper, share.right)),
-        left_and_right(lower, part_of(lower, share.right)),
-    ]
-}
-
-#[inline(always)]
-fn left_and_right<S: Simd>(row: u32x16<S>, right: u32x16<S>) -> u32x16<S> {
-    (row - right) | (right << 16)
-}
-
-/// Weights of the four texels: left and right of the upper row, left and right of the lower.
-#[inline(always)]
-fn float_weights<S: Simd>(share: &Share<S>) -> [[f32x16<S>; 4]; 4] {
-    let unit = 1.0 / ONE as f32;
-    let weight = f32x16::float_from(share.weight) * unit;
-    let lower = weight * (f32x16::float_from(share.lower) * unit);
-    let upper = weight - lower;
-    let right = f32x16::float_from(share.right) * unit;
-    let (upper_right, lower_right) = (upper * right, lower * right);
-    [
-        repeated_floats(upper - upper_right),
-        repeated_floats(upper_right),
-        repeated_floats(lower - lower_right),
-        repeated_floats(lower_right),
-    ]
-}
-
-/// Interleaved sums, each lane's times its scale.
-#[inline(always)]
-fn scaled<S: Simd>(mut sums: [f32x16<S>; 4], scale: f32x16<S>) -> [f32x16<S>; 4] {
-    let scales = repeated_floats(scale);
-    for group in 0..4 {
-        sums[group] *= scales[group];
-    }
-    sums
-}
+/// From two texels to the two of each channel side by side.
+const BESIDE: [u8; 16] = [0, 1, 8, 9, 2, 3, 10, 11, 4, 5, 12, 13, 6, 7, 14, 15];
 
 impl<S: Simd> Sums<S> for Sums16<S> {
+    /// Four codes less 2¹⁵ each.
     type Texel = u64;
 
     #[inline(always)]
     fn zero(simd: S) -> Self {
-        Self([f32x16::splat(simd, 0.0); 4])
-    }
-
-    #[inline(always)]
-    fn add(
-        &mut self,
-        simd: S,
-        texels: &[u64],
-        stride: usize,
-        offsets: u32x16<S>,
-        share: &Share<S>,
-    ) {
-        let weights = float_weights(share);
-        let quads = Quads::new(simd, texels, stride, offsets);
-        for half in 0..2 {
-            let mut codes = [[0u64; 8]; 4];
-            let [upper_left, upper_right, lower_left, lower_right] = &mut codes;
-            for (lane, code) in upper_left.iter_mut().enumerate() {
-                *code = quads.upper(8 * half + lane, Left);
-            }
-            for (lane, code) in upper_right.iter_mut().enumerate() {
-                *code = quads.upper(8 * half + lane, Right);
-            }
-            for (lane, code) in lower_left.iter_mut().enumerate() {
-                *code = quads.lower(8 * half + lane, Left);
-            }
-            for (lane, code) in lower_right.iter_mut().enumerate() {
-                *code = quads.lower(8 * half + lane, Right);
-            }
-            for (codes, weights) in codes.into_iter().zip(&weights) {
-                let codes: u16x32<S> = u64x8::simd_from(simd, codes).bitcast();
-                let (low, high) = codes.widen();
-                self.0[2 * half] += f32x16::float_from(low) * weights[2 * half];
-                self.0[2 * half + 1] += f32x16::float_from(high) * weights[2 * half + 1];
-            }
+        Self {
+            sums: [i32x16::splat(simd, 0); 4],
+            carried: [f32x16::splat(simd, 0.0); 4],
         }
     }
 
     #[inline(always)]
-    fn texels(self, _simd: S, scale: f32x16<S>) -> [f32x16<S>; 4] {
-        scaled(self.0, scale * (1.0 / 65535.0))
+    fn add(&mut self, simd: S, texels: &[u64], stride: usize, tap: &Tap) {
+        let left = u32x16::from_slice(simd, &tap.left);
+        let right = u32x16::from_slice(simd, &tap.right);
+        let upper = repeated((left & 0xffff) | (right << 16));
+        let lower = repeated((left >> 16) | (right & 0xffff_0000));
+        let quads = Quads::new(simd, texels, stride, &tap.offsets);
+        let beside = u8x64::block_splat(BESIDE.simd_into(simd));
+        for group in 0..4 {
+            let mut rows = [[[0u64; 2]; 4]; 2];
+            for lane in 0..4 {
+                rows[0][lane] = quads.upper(4 * group + lane);
+                rows[1][lane] = quads.lower(4 * group + lane);
+            }
+            for (row, weights) in rows.iter().zip([upper[group], lower[group]]) {
+                let bytes: u8x64<S> = u64x8::from_slice(simd, row.as_flattened()).bitcast();
+                let codes: u16x32<S> = bytes.swizzle_dyn_within_blocks(beside).bitcast();
+                self.sums[group] += dot(codes, weights);
+            }
+        }
     }
+
+    /// Codes less 2¹⁵ times 2·[`ONE`] fill the integers.
+    #[inline(always)]
+    fn carry(&mut self) {
+        for (carried, sum) in self.carried.iter_mut().zip(&mut self.sums) {
+            *carried += f32x16::float_from(*sum);
+            *sum -= *sum;
+        }
+    }
+
+    #[inline(always)]
+    fn texels(mut self, simd: S, total: u32x16<S>) -> [f32x16<S>; 4] {
+        self.carry();
+        let total = f32x16::float_from(total);
+        let scales = repeated_floats(f32x16::splat(simd, 1.0 / 65535.0) / total);
+        let signs = repeated_floats(total * f32::from(SIGNED_BY));
+        let mut texels = [f32x16::splat(simd, 0.0); 4];
+        for group in 0..4 {
+            texels[group] = (self.carried[group] + signs[group]) * scales[group];
+        }
+        texels
+    }
+}
+
+/// The unit of weights.
+const UNIT: f32 = 1.0 / ONE as f32;
+
+/// Weights of the four texels: left and right of the upper row, left and right of the lower.
+#[inline(always)]
+fn float_weights<S: Simd>(simd: S, tap: &Tap) -> [[f32x16<S>; 4]; 4] {
+    let left = u32x16::from_slice(simd, &tap.left);
+    let right = u32x16::from_slice(simd, &tap.right);
+    [
+        of_texel(left & 0xffff),
+        of_texel(right & 0xffff),
+        of_texel(left >> 16),
+        of_texel(right >> 16),
+    ]
+}
+
+#[inline(always)]
+fn of_texel<S: Simd>(weights: u32x16<S>) -> [f32x16<S>; 4] {
+    repeated_floats(f32x16::float_from(weights) * UNIT)
 }
 
 impl<S: Simd> Sums<S> for SumsFloat<S> {
@@ -276,34 +247,30 @@ impl<S: Simd> Sums<S> for SumsFloat<S> {
     }
 
     #[inline(always)]
-    fn add(
-        &mut self,
-        simd: S,
-        texels: &[[f32; 4]],
-        stride: usize,
-        offsets: u32x16<S>,
-        share: &Share<S>,
-    ) {
-        let weights = float_weights(share);
-        let quads = Quads::new(simd, texels, stride, offsets);
+    fn add(&mut self, simd: S, texels: &[[f32; 4]], stride: usize, tap: &Tap) {
+        let weights = float_weights(simd, tap);
+        let quads = Quads::new(simd, texels, stride, &tap.offsets);
         for group in 0..4 {
-            let mut colours = [[0.0f32; 16]; 4];
+            let mut colours = [[[0.0f32; 4]; 4]; 4];
             for lane in 0..4 {
                 let from = 4 * group + lane;
-                let to = 4 * lane..4 * lane + 4;
-                colours[0][to.clone()].copy_from_slice(&quads.upper(from, Left));
-                colours[1][to.clone()].copy_from_slice(&quads.upper(from, Right));
-                colours[2][to.clone()].copy_from_slice(&quads.lower(from, Left));
-                colours[3][to].copy_from_slice(&quads.lower(from, Right));
+                let ([a, b], [c, d]) = (quads.upper(from), quads.lower(from));
+                for (colours, colour) in colours.iter_mut().zip([a, b, c, d]) {
+                    colours[lane] = colour;
+                }
             }
             for (colours, weights) in colours.iter().zip(&weights) {
-                self.0[group] += f32x16::from_slice(simd, colours) * weights[group];
+                self.0[group] += f32x16::from_slice(simd, colours.as_flattened()) * weights[group];
             }
         }
     }
 
     #[inline(always)]
-    fn texels(self, _simd: S, scale: f32x16<S>) -> [f32x16<S>; 4] {
-        scaled(self.0, scale)
+    fn texels(mut self, simd: S, total: u32x16<S>) -> [f32x16<S>; 4] {
+        let scales = repeated_floats(f32x16::splat(simd, ONE as f32) / f32x16::float_from(total));
+        for group in 0..4 {
+            self.0[group] *= scales[group];
+        }
+        self.0
     }
 }

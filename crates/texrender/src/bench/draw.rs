@@ -16,7 +16,7 @@ use texcoord::unrolled::{four, three};
 
 use super::picture::{HEIGHT, Picture, WIDTH};
 use super::scene::{Configuration, Scene};
-use super::shade::TileShader;
+use super::shade::{RowTaps, TileShader};
 use super::textures::Textures;
 use crate::error::Error;
 
@@ -32,9 +32,16 @@ pub struct Renderer {
     level: Level,
     viewport: Viewport,
     frame: Frame,
-    /// One for each thread.
-    tiles: Vec<Mutex<VisibilityTile>>,
+    /// Of each thread.
+    tiles: Vec<Mutex<Scratch>>,
     picture: Picture,
+}
+
+/// Memory of a thread.
+#[derive(Debug)]
+struct Scratch {
+    tile: VisibilityTile,
+    taps: RowTaps,
 }
 
 /// A tile and the rows of the picture that it covers.
@@ -52,12 +59,17 @@ impl Renderer {
         let viewport = Viewport::new(WIDTH, HEIGHT).expect("a constant");
         let pattern = SamplePattern::standard(1).expect("a constant");
         let grid = TileGrid::new(viewport, TILE).expect("a constant");
-        let tile = || Mutex::new(VisibilityTile::with_level(&pattern, level));
+        let scratch = || Scratch {
+            tile: VisibilityTile::with_level(&pattern, level),
+            taps: RowTaps::default(),
+        };
         Self {
             level,
             viewport,
             frame: Frame::new(grid, &pattern, level),
-            tiles: (0..rayon::current_num_threads()).map(|_| tile()).collect(),
+            tiles: (0..rayon::current_num_threads())
+                .map(|_| Mutex::new(scratch()))
+                .collect(),
             picture: Picture::new(),
         }
     }
@@ -159,23 +171,19 @@ impl Renderer {
 }
 
 /// Draws tile by tile; each thread takes the next that is left.
-fn shade(
-    level: Level,
-    shader: &TileShader<'_>,
-    tiles: &[Mutex<VisibilityTile>],
-    picture: &mut Picture,
-) {
+fn shade(level: Level, shader: &TileShader<'_>, tiles: &[Mutex<Scratch>], picture: &mut Picture) {
     let frame = shader.frame;
     let queue = Mutex::new(jobs(&mut picture.pixels).into_iter());
     let next = || queue.lock().ok().and_then(|mut jobs| jobs.next());
     let work = |thread: usize| {
-        let Ok(mut tile) = tiles[thread].lock() else {
+        let Ok(mut scratch) = tiles[thread].lock() else {
             return;
         };
+        let Scratch { tile, taps } = &mut *scratch;
         while let Some(mut job) = next() {
             tile.reset(frame.grid().rect(job.tile));
-            frame.draw_tile(job.tile, &mut tile);
-            dispatch!(level, simd => shader.tile(simd, &tile, &mut job.rows));
+            frame.draw_tile(job.tile, tile);
+            dispatch!(level, simd => shader.tile(simd, tile, &mut job.rows, taps));
         }
     };
     rayon::broadcast(|context| work(context.index()));

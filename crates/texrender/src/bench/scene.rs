@@ -145,8 +145,10 @@ impl Filter {
                 ..base
             },
             Self::Trilinear => base,
+            // Half of the levels' blending: a quarter of the texels less, at an error still below all others'.
             Self::Aniso(most) => SamplerState {
                 max_anisotropy: f32::from(most),
+                mip_band: 0.5,
                 ..base
             },
         }

@@ -3,7 +3,7 @@
 use fearless_simd::{Simd, f32x4, f32x16, prelude::*, u32x16};
 use glam::UVec2;
 use mipmap::SamplerState;
-use mipmap::packet::{PackedPyramid, PacketFootprint, sample, sample_codes};
+use mipmap::packet::{PackedPyramid, PacketFootprint, Taps};
 use raster::{Frame, OwnerRows, Owners, SurfacePacket, VisibilityTile, surface_packet};
 use texcoord::packet::{F64x16, LANES};
 use texcoord::planes::{CoordinatePlanes, PacketCoordinates};
@@ -35,6 +35,12 @@ struct LastPlanes {
     planes: CoordinatePlanes,
 }
 
+/// Packets of a tile's row.
+const PACKETS: usize = 4;
+
+/// Memory of a thread: what the packets of a row read of their textures.
+pub(super) type RowTaps = [Taps; PACKETS];
+
 impl TileShader<'_> {
     /// Writes the pixels of a tile to the rows of the picture that it covers.
     #[inline(always)]
@@ -43,6 +49,7 @@ impl TileShader<'_> {
         simd: S,
         visibility: &VisibilityTile,
         rows: &mut [&mut [u32]],
+        taps: &mut RowTaps,
     ) {
         let corner = visibility.rect().min;
         let mut last = None;
@@ -55,25 +62,44 @@ impl TileShader<'_> {
                 Owners::Single(Some(owner)) => Row::Same(owner),
                 Owners::Each(owners) => Row::Each(owners.row(y, 0)),
             };
-            for (k, pixels) in row.chunks_mut(LANES).enumerate() {
-                let at = [k * LANES, y];
-                let found = match owners {
-                    Row::Same(owner) => self.one_triangle(simd, owner, corner, at, &mut last),
-                    Row::Each(row) => {
-                        let owners = &row[k * LANES..][..LANES];
-                        self.packet(simd, owners, corner, at, &mut last)
-                    }
-                };
-                if pixels.len() == LANES {
-                    found.store_slice(pixels);
-                } else {
-                    pixels.copy_from_slice(&found.as_slice()[..pixels.len()]);
+            self.row(simd, owners, (corner, y), row, (&mut last, taps));
+        }
+    }
+
+    /// Finds the taps of all packets before it reads the texels of any: neither waits for the other.
+    #[inline(always)]
+    fn row<S: Simd>(
+        &self,
+        simd: S,
+        owners: Row<'_>,
+        (corner, y): (UVec2, usize),
+        row: &mut [u32],
+        (last, taps): (&mut Option<LastPlanes>, &mut RowTaps),
+    ) {
+        let mut found = [false; PACKETS];
+        let packets = row.chunks_mut(LANES).zip(&mut *taps).zip(&mut found);
+        for (k, ((pixels, taps), found)) in packets.enumerate() {
+            let at = [k * LANES, y];
+            let shaded = match owners {
+                Row::Same(owner) => self.one_triangle(simd, owner, corner, at, (last, taps)),
+                Row::Each(row) => {
+                    let owners = &row[k * LANES..][..LANES];
+                    self.packet(simd, owners, corner, at, (last, taps))
                 }
+            };
+            match shaded {
+                Some(codes) => store(codes, pixels),
+                None => *found = true,
+            }
+        }
+        for ((pixels, taps), found) in row.chunks_mut(LANES).zip(&*taps).zip(found) {
+            if found {
+                taps.write_codes(simd, self.textures[0], pixels);
             }
         }
     }
 
-    /// Sixteen pixels of a row and who they belong to.
+    /// Colours of sixteen pixels of a row; `None` where the taps of one triangle were found.
     #[inline(always)]
     fn packet<S: Simd>(
         &self,
@@ -81,23 +107,23 @@ impl TileShader<'_> {
         owners: &[u32],
         corner: UVec2,
         at: [usize; 2],
-        last: &mut Option<LastPlanes>,
-    ) -> u32x16<S> {
+        memory: (&mut Option<LastPlanes>, &mut Taps),
+    ) -> Option<u32x16<S>> {
         let lanes = u32x16::from_slice(simd, owners);
         let clear = u32x16::splat(simd, CLEAR);
         let first = owners[0];
         if lanes.simd_eq(first).all_true() {
             return match first {
-                OwnerRows::NOBODY => clear,
-                owner => self.one_triangle(simd, owner, corner, at, last),
+                OwnerRows::NOBODY => Some(clear),
+                owner => self.one_triangle(simd, owner, corner, at, memory),
             };
         }
         let covered = !lanes.simd_eq(OwnerRows::NOBODY);
         // Lanes without a triangle take part in somebody's.
         let lane = covered.to_bitmask().trailing_zeros() as usize;
         let owners = covered.select(lanes, u32x16::splat(simd, owners[lane]));
-        let found = self.many_triangles(simd, &owners.to_array(), pixel(corner, at));
-        covered.select(found, clear)
+        let found = self.many_triangles(simd, &owners.to_array(), pixel(corner, at), memory.1);
+        Some(covered.select(found, clear))
     }
 
     /// Sixteen pixels of one triangle: inlined, so that its planes stay in registers along a row.
@@ -108,10 +134,11 @@ impl TileShader<'_> {
         owner: u32,
         corner: UVec2,
         at: [usize; 2],
-        last: &mut Option<LastPlanes>,
-    ) -> u32x16<S> {
+        (last, taps): (&mut Option<LastPlanes>, &mut Taps),
+    ) -> Option<u32x16<S>> {
         if self.scene.shader != Shader::Texture {
-            return self.many_triangles(simd, &[owner; LANES], pixel(corner, at));
+            let owners = &[owner; LANES];
+            return Some(self.many_triangles(simd, owners, pixel(corner, at), taps));
         }
         let planes = match last {
             Some(last) if last.owner == owner => &last.planes,
@@ -122,7 +149,8 @@ impl TileShader<'_> {
         };
         let coordinates = planes.packet(simd, at[0] as f64, at[1] as f64);
         let footprint = footprint(self.textures[0], &coordinates);
-        sample_codes(simd, self.textures[0], self.state, &footprint)
+        taps.find(simd, self.textures[0], self.state, &footprint);
+        None
     }
 
     /// Texture coordinates over a triangle, from the first pixel of a tile.
@@ -146,23 +174,38 @@ impl TileShader<'_> {
     ///
     /// One function however many callers: inlined it is 20 KiB of code each, for each instruction set.
     #[inline(never)]
-    fn many_triangles<S: Simd>(&self, simd: S, owners: &[u32; LANES], first: UVec2) -> u32x16<S> {
+    fn many_triangles<S: Simd>(
+        &self,
+        simd: S,
+        owners: &[u32; LANES],
+        first: UVec2,
+        taps: &mut Taps,
+    ) -> u32x16<S> {
         simd.vectorize(
             #[inline(always)]
-            || self.mixed_triangles(simd, owners, first),
+            || self.mixed_triangles(simd, owners, first, taps),
         )
     }
 
     #[inline(always)]
-    fn mixed_triangles<S: Simd>(&self, simd: S, owners: &[u32; LANES], first: UVec2) -> u32x16<S> {
+    fn mixed_triangles<S: Simd>(
+        &self,
+        simd: S,
+        owners: &[u32; LANES],
+        first: UVec2,
+        taps: &mut Taps,
+    ) -> u32x16<S> {
         let surfaces = surface_packet(simd, self.frame, owners, first);
         let corners = self.rows(simd, 0, &surfaces);
         let coordinates = coordinates(&surfaces, &corners);
         let footprint = footprint(self.textures[0], &coordinates);
+        taps.find(simd, self.textures[0], self.state, &footprint);
         if self.scene.shader == Shader::Texture {
-            return sample_codes(simd, self.textures[0], self.state, &footprint);
+            let mut codes = [0; LANES];
+            taps.write_codes(simd, self.textures[0], &mut codes);
+            return codes.simd_into(simd);
         }
-        let [r, g, b, _] = sample(simd, self.textures[0], self.state, &footprint);
+        let [r, g, b, _] = taps.sample(simd, self.textures[0]);
         let weights = three(
             #[inline(always)]
             |k| surfaces.weights.weights[k].narrow(),
@@ -172,8 +215,9 @@ impl TileShader<'_> {
         let (normal, position) = ([nx, ny, nz], [px, py, pz]);
         let to_eye = self.eye_direction(simd, &surfaces, position);
         let (normal, highlight) = if self.scene.shader == Shader::NormalMapped {
-            let [x, y, z, _] = sample(simd, self.textures[1], self.state, &footprint);
-            let [strength, ..] = sample(simd, self.textures[2], self.state, &footprint);
+            // Textures of one shape at one place.
+            let [x, y, z, _] = taps.sample(simd, self.textures[1]);
+            let [strength, ..] = taps.sample(simd, self.textures[2]);
             let [tx, ty, tz, _] = mixed(&weights, &self.rows(simd, 2, &surfaces));
             let normal = mapped_normal(simd, normal, [tx, ty, tz], [x, y, z]);
             (normal, strength * MAPPED_HIGHLIGHT)
@@ -242,6 +286,16 @@ impl TileShader<'_> {
     #[inline(always)]
     fn vertex(&self, vertex: u32) -> usize {
         (vertex & ((1 << self.vertex_bits) - 1)) as usize
+    }
+}
+
+/// Writes as many as there are pixels.
+#[inline(always)]
+fn store<S: Simd>(codes: u32x16<S>, pixels: &mut [u32]) {
+    if pixels.len() == LANES {
+        codes.store_slice(pixels);
+    } else {
+        pixels.copy_from_slice(&codes.as_slice()[..pixels.len()]);
     }
 }
 

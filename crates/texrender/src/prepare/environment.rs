@@ -7,6 +7,7 @@ use envmap::{
 };
 use fearless_simd::{Simd, f32x16};
 use glam::{Mat3, UVec2, Vec3};
+use mipmap::packet::Taps;
 use rayon::prelude::*;
 use sampler::{Texture, Transfer};
 use shading::packet::Vec3x16;
@@ -78,18 +79,20 @@ impl Environment {
     }
 
     /// Radiance seen in sixteen unit directions by pixels whose neighbours look `dx` and `dy` further; 0 if
-    /// the environment is not seen.
+    /// the environment is not seen. `taps`: memory to use.
     #[inline(always)]
     #[must_use]
     pub fn seen<S: Simd>(
         &self,
         simd: S,
+        taps: &mut Taps,
         direction: Vec3x16<S>,
         [dx, dy]: [Vec3x16<S>; 2],
     ) -> Vec3x16<S> {
         match &self.latlong {
             Some(map) => map.radiance_filtered(
                 simd,
+                taps,
                 self.turned(direction),
                 self.turned(dx),
                 self.turned(dy),

@@ -3,6 +3,7 @@
 use fearless_simd::prelude::*;
 use fearless_simd::{Simd, f32x16};
 use glam::Vec4;
+use mipmap::packet::Taps;
 use raster::Rect;
 use shading::packet::{LANES, Vec3x16, rows};
 
@@ -31,9 +32,10 @@ pub(super) fn background(
     let pixels = size.x as usize * size.y as usize;
     let open = open_pixels(pairs, pixels, full);
     behind.resize(pixels, Vec4::ZERO);
+    let mut taps = Taps::default();
     fearless_simd::dispatch!(settings.simd, simd => {
         for group in open.chunks(LANES) {
-            let lights = seen(simd, frame, environment, rect, group);
+            let lights = seen(simd, (frame, &mut taps), environment, rect, group);
             for (&pixel, light) in group.iter().zip(lights) {
                 behind[pixel] = Vec4::from_array(light);
             }
@@ -65,7 +67,7 @@ fn open_pixels(pairs: &Pairs, pixels: usize, full: u64) -> Vec<usize> {
 #[inline(always)]
 fn seen<S: Simd>(
     simd: S,
-    frame: &Frame,
+    (frame, taps): (&Frame, &mut Taps),
     environment: &Environment,
     rect: Rect,
     pixels: &[usize],
@@ -79,6 +81,6 @@ fn seen<S: Simd>(
     }
     let (x, y) = (f32x16::load_array(simd, x), f32x16::load_array(simd, y));
     let (direction, changes) = frame.rays.away(simd, x, y);
-    let Vec3x16 { x, y, z } = environment.seen(simd, direction, changes);
+    let Vec3x16 { x, y, z } = environment.seen(simd, taps, direction, changes);
     rows([x, y, z, f32x16::splat(simd, 1.0)])
 }

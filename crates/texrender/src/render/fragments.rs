@@ -1,5 +1,7 @@
 //! What the vertices say at sixteen pixels.
 
+use std::cell::RefCell;
+
 use fearless_simd::f32x16;
 use fearless_simd::prelude::*;
 use glam::{IVec2, Vec4};
@@ -10,11 +12,11 @@ use texcoord::packet::F64x16;
 
 use super::coordinates::Coordinates;
 use super::frame::Frame;
-use super::lanes::{Lanes, Points, Rows};
+use super::lanes::{Points, Rows};
 use super::layout::{Layout, Normals};
 use super::mapped::{MappedLanes, SurfaceLanes, mapped};
-use super::record::Records;
-use super::textures;
+use super::packets::Packet;
+use super::textures::{self, LastTaps, Place};
 use crate::plan::{Map, MapSource, TangentSource};
 use crate::scene::Coordinates as Set;
 
@@ -36,6 +38,7 @@ pub(super) struct Fragments<'a, S: Simd> {
     weights: [f32x16<S>; 3],
     /// Scale of the pixels' footprints.
     pub footprint: f32,
+    pub(super) taps: &'a RefCell<LastTaps>,
     /// Coordinates of the layout's first set.
     first_set: Option<Coordinates<S>>,
     /// Where the points lie and what each of the layout's mappings makes of it, if there are any.
@@ -48,10 +51,11 @@ impl<'a, S: Simd> Fragments<'a, S> {
         simd: S,
         frame: &'a Frame<'a>,
         layout: &'a Layout,
-        lanes: &'a Lanes,
-        records: &'a Records,
+        packet: &'a Packet,
         positions: &[IVec2],
     ) -> Self {
+        let (lanes, records) = (&packet.lanes, &packet.records);
+        packet.taps.borrow_mut().forget();
         let rows = Rows::new(simd, layout, lanes, records);
         let points = Points::new(&rows, positions);
         let [b0, b1, b2] = points.weights.weights;
@@ -64,6 +68,7 @@ impl<'a, S: Simd> Fragments<'a, S> {
             points,
             weights,
             footprint: 1.0,
+            taps: &packet.taps,
             first_set: None,
             mapped: None,
         };
@@ -215,8 +220,11 @@ impl<'a, S: Simd> Fragments<'a, S> {
     #[inline(always)]
     pub(super) fn sample(&self, map: &Map) -> [f32x16<S>; 4] {
         match (&map.source, map.coordinates) {
-            (MapSource::Image(image), Set::Set(_)) => {
-                textures::sample(self.simd, self.frame, image, &self.map_coordinates(map))
+            (MapSource::Image(image), Set::Set(set)) => {
+                let transform = map.transform;
+                let place = Some(Place { set, transform });
+                let at = self.map_coordinates(map);
+                textures::sample(self.simd, self.frame, self.taps, image, &at, place)
             }
             _ => self.blended(map),
         }

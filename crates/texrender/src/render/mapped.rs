@@ -205,7 +205,7 @@ impl<S: Simd> Fragments<'_, S> {
         let simd = self.simd;
         let Set::Mapping(mapping) = map.coordinates else {
             let at = self.map_coordinates(map);
-            return textures::sample_source(simd, self.frame, map, &at, &[[0.0; 16]; 3]);
+            return textures::sample_source(simd, self.frame, self.taps, map, &at, &[[0.0; 16]; 3]);
         };
         let neutral = self.color(map.neutral);
         let mut sum = [self.splat(0.0); 4];
@@ -215,7 +215,7 @@ impl<S: Simd> Fragments<'_, S> {
                 break;
             };
             let at = lookup.coordinates.placed(simd, map.transform.as_ref());
-            let texel = textures::sample_source(simd, self.frame, map, &at, &lookup.p);
+            let texel = textures::sample_source(simd, self.frame, self.taps, map, &at, &lookup.p);
             for (sum, texel) in sum.iter_mut().zip(texel) {
                 *sum += lookup
                     .weight
@@ -257,7 +257,8 @@ impl<S: Simd> Fragments<'_, S> {
                 break;
             };
             let at = lookup.coordinates.placed(simd, map.transform.as_ref());
-            let [x, y, z, _] = textures::sample_source(simd, self.frame, map, &at, &lookup.p);
+            let [x, y, z, _] =
+                textures::sample_source(simd, self.frame, self.taps, map, &at, &lookup.p);
             let texel = Vec3x16::new(x, y, z);
             let (tangent, handedness) = lanes.tangents(simd, k, surface, normal);
             let frame = turned(TangentFrame::new(normal, tangent, handedness), map);

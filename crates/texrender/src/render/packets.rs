@@ -1,5 +1,7 @@
 //! From the pairs of a tile to packets, and back.
 
+use std::cell::RefCell;
+
 use fearless_simd::Simd;
 use glam::{UVec2, Vec4};
 use raster::Rect;
@@ -12,13 +14,15 @@ use super::lanes::Lanes;
 use super::pairs::{Pairs, Shaded};
 use super::record::Records;
 use super::shade::{Values, alpha, shade, values};
+use super::textures::LastTaps;
 use crate::plan::Coverage;
 
 /// The packet that is being filled, used again from tile to tile.
 #[derive(Debug, Default)]
 pub(super) struct Packet {
-    lanes: Lanes,
-    records: Records,
+    pub(super) lanes: Lanes,
+    pub(super) records: Records,
+    pub(super) taps: RefCell<LastTaps>,
     /// Records held.
     count: usize,
     /// Pair or test of each lane.
@@ -138,9 +142,8 @@ fn shade_packet<S: Simd>(
         #[inline(always)]
         || {
             packet.lanes.pad();
-            let (lanes, records) = (&packet.lanes, &packet.records);
             let positions = geometry.pattern.positions();
-            let fragments = Fragments::new(simd, frame, &kernel.layout, lanes, records, positions);
+            let fragments = Fragments::new(simd, frame, &kernel.layout, packet, positions);
             let (color, alpha) = shade(&fragments, kernel.kernel);
             let unlit = !kernel.kernel.is_lit();
             let Vec3x16 { x, y, z } = color * alpha;
@@ -252,12 +255,10 @@ fn test_packet<S: Simd>(
     simd.vectorize(
         #[inline(always)]
         || {
-            let (lanes, records) = (&packet.lanes, &packet.records);
             let positions = geometry.pattern.positions();
             let footprint = 1.0 / (positions.len() as f32).sqrt();
-            let fragments =
-                Fragments::new(simd, frame, &kernel.alpha_layout, lanes, records, positions)
-                    .with_footprint_scale(footprint);
+            let fragments = Fragments::new(simd, frame, &kernel.alpha_layout, packet, positions)
+                .with_footprint_scale(footprint);
             let alpha = alpha(&fragments, kernel.kernel);
             for (lane, &slot) in packet.slots().iter().enumerate() {
                 let kept = u64::from(alpha[lane] >= cutoff) << samples[lane];

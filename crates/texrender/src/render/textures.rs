@@ -1,41 +1,109 @@
 //! The colours of maps under sixteen pixels.
 
+use std::cell::RefCell;
+
 use fearless_simd::f32x16;
 use fearless_simd::prelude::*;
 use glam::{DVec2, Vec2, Vec4};
-use mipmap::packet::PacketFootprint;
-use mipmap::{Footprint, LodRule, Pyramid};
+use mipmap::packet::{PacketFootprint, Taps};
+use mipmap::{Footprint, LodRule, Pyramid, SamplerState};
 use sampler::solid::box_width;
+use texcoord::AffineTransform;
 
 use super::coordinates::Coordinates;
 use super::frame::Frame;
 use crate::plan::{ImageMap, Map, MapReading, MapSource, TextureRole};
 use crate::scene::Texture;
 
-/// Colours of a map, a packet a channel; not premultiplied.
+/// The taps that were found last, and what for: the maps of a surface often read textures of one shape at one place.
+#[derive(Debug, Default)]
+pub(super) struct LastTaps {
+    taps: Taps,
+    found: Option<Found>,
+}
+
+/// What taps were found for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Found {
+    at: Place,
+    sheet: usize,
+    sampler: SamplerState,
+}
+
+/// Whose coordinates they are, of one packet.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Place {
+    pub(super) set: usize,
+    pub(super) transform: Option<AffineTransform>,
+}
+
+impl LastTaps {
+    /// Another packet begins.
+    pub(super) fn forget(&mut self) {
+        self.found = None;
+    }
+
+    /// Finds the taps of a map, if they are not those that were found last. `place`: `None` for coordinates that no
+    /// other map has.
+    #[inline(always)]
+    fn of<S: Simd>(
+        &mut self,
+        simd: S,
+        frame: &Frame,
+        (map, sheet): (&ImageMap, usize),
+        at: &Coordinates<S>,
+        place: Option<Place>,
+    ) -> &Taps {
+        let wanted = place.map(|at| Found {
+            at,
+            sheet,
+            sampler: map.sampler,
+        });
+        let sheets = &frame.resources.sheets;
+        let same = match (&self.found, &wanted) {
+            (Some(found), Some(wanted)) => {
+                found.at == wanted.at
+                    && found.sampler == wanted.sampler
+                    && sheets[found.sheet].is_alike(&sheets[sheet])
+            }
+            _ => false,
+        };
+        if !same {
+            let sheet = &sheets[sheet];
+            let (s, t) = sheet.reduce(at.s.0, at.t.0);
+            let footprint = PacketFootprint {
+                s,
+                t,
+                ds_dx: at.ds_dx,
+                dt_dx: at.dt_dx,
+                ds_dy: at.ds_dy,
+                dt_dy: at.dt_dy,
+            };
+            self.taps.find(simd, sheet, &map.sampler, &footprint);
+            self.found = wanted;
+        }
+        &self.taps
+    }
+}
+
+/// Colours of a map, a packet a channel; not premultiplied. `place`: as that of the taps.
 #[inline(never)]
 pub(super) fn sample<S: Simd>(
     simd: S,
     frame: &Frame,
+    last: &RefCell<LastTaps>,
     map: &ImageMap,
     at: &Coordinates<S>,
+    place: Option<Place>,
 ) -> [f32x16<S>; 4] {
     simd.vectorize(
         #[inline(always)]
         || {
             let texels = match map.sheet {
                 Some(sheet) => {
-                    let sheet = &frame.resources.sheets[sheet];
-                    let (s, t) = sheet.reduce(at.s.0, at.t.0);
-                    let footprint = PacketFootprint {
-                        s,
-                        t,
-                        ds_dx: at.ds_dx,
-                        dt_dx: at.dt_dx,
-                        ds_dy: at.ds_dy,
-                        dt_dy: at.dt_dy,
-                    };
-                    mipmap::packet::sample(simd, sheet, &map.sampler, &footprint)
+                    let mut last = last.borrow_mut();
+                    let taps = last.of(simd, frame, (map, sheet), at, place);
+                    taps.sample(simd, &frame.resources.sheets[sheet])
                 }
                 None => one_by_one(simd, frame, map, at),
             };
@@ -92,6 +160,7 @@ fn channels<S: Simd>(simd: S, texels: &[Vec4; 16]) -> [f32x16<S>; 4] {
 pub(super) fn sample_source<S: Simd>(
     simd: S,
     frame: &Frame,
+    last: &RefCell<LastTaps>,
     map: &Map,
     at: &Coordinates<S>,
     p: &[[f64; 16]; 3],
@@ -104,7 +173,7 @@ pub(super) fn sample_source<S: Simd>(
         (st.extend(p), changes)
     };
     match map.source {
-        MapSource::Image(image) => sample(simd, frame, &image, at),
+        MapSource::Image(image) => sample(simd, frame, last, &image, at, None),
         MapSource::Solid(index) => {
             let Some(Texture::Solid(solid)) = frame.scene.textures.get(index) else {
                 return [f32x16::splat(simd, 1.0); 4];

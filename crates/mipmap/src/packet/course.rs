@@ -1,0 +1,183 @@
+//! The taps of sixteen footprints.
+
+use fearless_simd::prelude::*;
+use fearless_simd::{Simd, f32x16, i32x16, mask32x16, u32x16};
+use sampler::packet::{ONE, Share, Tap, fold, held};
+use sampler::{AddressMode, Filter};
+
+use super::layout::Placed;
+use super::plan::{Line, Plan};
+use super::{PackedPyramid, PacketFootprint};
+use crate::sample::SamplerState;
+
+/// Where a packet's taps are: one place on one or two levels, or pairs of probes on either side of it.
+pub(super) struct Course<S: Simd> {
+    simd: S,
+    modes: [AddressMode; 2],
+    stride: u32,
+    /// Whole textures and parts of them, as [`fold`] takes them.
+    middle: [f32x16<S>; 2],
+    /// The finer level and the next.
+    placed: [Placed<S>; 2],
+    /// How many of them are read.
+    pub(super) levels: usize,
+    fraction: f32x16<S>,
+    split: Split<S>,
+}
+
+/// How a place on an axis is split into the first of two neighbouring texels and the weight of the second.
+struct Split<S: Simd> {
+    /// Always between the centres of two texels, [`ONE`] units apart.
+    between_centres: bool,
+    /// Lanes that read one texel of a level.
+    nearest: mask32x16<S>,
+    bordered: bool,
+    /// Binary digits of a unit.
+    bits: u32,
+}
+
+impl<S: Simd> Course<S> {
+    #[inline(always)]
+    pub(super) fn new(
+        simd: S,
+        texture: &PackedPyramid,
+        state: &SamplerState,
+        footprint: &PacketFootprint<S>,
+        plan: &Plan<S>,
+    ) -> Self {
+        Self {
+            simd,
+            modes: texture.modes(),
+            stride: texture.sheet().stride(),
+            middle: [held(simd, footprint.s), held(simd, footprint.t)],
+            placed: texture.placed(simd, plan.fine),
+            levels: 1 + usize::from(plan.fraction.simd_gt(0.0).any_true()),
+            fraction: plan.fraction,
+            split: Split::of(simd, texture, state, plan.minified),
+        }
+    }
+
+    /// Sets [`Self::levels`] taps to those of the middle.
+    #[inline(always)]
+    pub(super) fn middle(&self, taps: &mut [Tap]) {
+        let coarse = units(self.fraction);
+        let one = u32x16::splat(self.simd, ONE);
+        self.probe(self.middle, [one - coarse, coarse], taps);
+    }
+
+    /// Sets a tap to the nearest texel of one level, of a texture without a border.
+    #[inline(always)]
+    pub(super) fn nearest(&self, tap: &mut Tap) {
+        let placed = &self.placed[0];
+        let index = |place: f32x16<S>, size: f32x16<S>| {
+            u32x16::truncate_from((place * size).min(size - 1.0)) >> self.split.bits
+        };
+        let column = index(fold(self.simd, self.modes[0], self.middle[0]), placed.width);
+        let row = index(
+            fold(self.simd, self.modes[1], self.middle[1]),
+            placed.height,
+        );
+        // Counted from the ring.
+        let offsets = placed.origin + (row + 1) * self.stride + (column + 1);
+        tap.set_single(self.simd, offsets);
+    }
+
+    /// Sets twice as many to those of a pair of probes: pair 0 stands before and after the middle, pair 1 beside them,
+    /// and so on.
+    #[inline(always)]
+    pub(super) fn pair(&self, line: &Line<S>, pair: u32, taps: &mut [Tap]) {
+        let none = u32x16::splat(self.simd, 0);
+        let one = u32x16::splat(self.simd, ONE);
+        let k = f32x16::splat(self.simd, pair as f32);
+        let (inner, outer) = (k.simd_lt(line.whole), k.simd_gt(line.whole));
+        let cells = inner.select(k + 0.5, line.end_at);
+        let all = inner.select(one, outer.select(none, units(line.end)));
+        let end = units(line.end * self.fraction);
+        let coarse = inner.select(units(self.fraction), outer.select(none, end));
+        let (ds, dt) = (line.step_s * cells, line.step_t * cells);
+        let [s, t] = self.middle;
+        let (before, after) = taps.split_at_mut(self.levels);
+        self.probe([s - ds, t - dt], [all - coarse, coarse], before);
+        self.probe([s + ds, t + dt], [all - coarse, coarse], after);
+    }
+
+    /// Sets the taps of a place on each level.
+    #[inline(always)]
+    fn probe(&self, [s, t]: [f32x16<S>; 2], weights: [u32x16<S>; 2], taps: &mut [Tap]) {
+        let s = fold(self.simd, self.modes[0], s);
+        let t = fold(self.simd, self.modes[1], t);
+        let levels = self.placed.iter().zip(weights);
+        for (tap, (placed, weight)) in taps.iter_mut().zip(levels) {
+            let (column, right) = self.split.texel(self.simd, s, placed.width);
+            let (row, lower) = self.split.texel(self.simd, t, placed.height);
+            let offsets = placed.origin + row * self.stride + column;
+            let share = Share {
+                right,
+                lower,
+                weight,
+            };
+            tap.set(offsets, &share);
+        }
+    }
+}
+
+/// What all pairs of a line count for, in units of 1/[`ONE`].
+#[inline(always)]
+pub(super) fn total<S: Simd>(line: &Line<S>) -> u32x16<S> {
+    (u32x16::truncate_from(line.whole) * ONE + units(line.end)) * 2
+}
+
+/// Of 0..=1, in units of 1/[`ONE`].
+#[inline(always)]
+fn units<S: Simd>(weight: f32x16<S>) -> u32x16<S> {
+    u32x16::truncate_from(weight * ONE as f32 + 0.5)
+}
+
+impl<S: Simd> Split<S> {
+    #[inline(always)]
+    fn of(simd: S, texture: &PackedPyramid, state: &SamplerState, minified: mask32x16<S>) -> Self {
+        let zero = f32x16::splat(simd, 0.0);
+        let filters = [state.magnify, state.minify].map(|filter| filter == Filter::Nearest);
+        let nearest = match filters {
+            [false, false] => zero.simd_lt(zero),
+            [true, true] => zero.simd_eq(zero),
+            [true, false] => !minified,
+            [false, true] => minified,
+        };
+        let bordered = texture.modes().contains(&AddressMode::ClampToBorder);
+        let bits = texture.fraction_bits();
+        Self {
+            between_centres: filters == [false; 2] && !bordered && bits == ONE.ilog2(),
+            nearest,
+            bordered,
+            bits,
+        }
+    }
+
+    /// The first of two neighbouring texels on an axis of `size`, counted from the ring, and the weight of the second.
+    #[inline(always)]
+    fn texel(&self, simd: S, place: f32x16<S>, size: f32x16<S>) -> (u32x16<S>, u32x16<S>) {
+        if self.between_centres {
+            // Half a texel more than the place: the ring is one wide, a centre half of one from its border.
+            let units = u32x16::truncate_from(place * size + (ONE / 2) as f32);
+            return (units >> ONE.ilog2(), units & (ONE - 1));
+        }
+        let bits = self.bits;
+        let one = f32x16::splat(simd, (1u32 << bits) as f32);
+        let zero = f32x16::splat(simd, 0.0);
+        let to_centre = self.nearest.select(zero, one * 0.5);
+        // A whole texel more than the place, so that truncation is the floor.
+        let mut units = place * size + (one - to_centre);
+        if self.bordered {
+            units = units.max(zero);
+        }
+        // At the far end, and beyond a border, the last texel's right edge.
+        let far = i32x16::truncate_from(size) + ((1 << bits) - 1);
+        let units = i32x16::truncate_from(units).min(far);
+        let fraction = units & ((1 << bits) - 1);
+        let first: u32x16<S> = (units >> bits).bitcast();
+        let second: u32x16<S> = (fraction << (ONE.ilog2() - bits)).bitcast();
+        let none = u32x16::splat(simd, 0);
+        (first, self.nearest.select(none, second))
+    }
+}

@@ -1,0 +1,176 @@
+use fearless_simd::prelude::*;
+use fearless_simd::{Simd, f32x16, u32x16};
+use sampler::packet::{LANES, SheetTexels, Sums8, Sums16, SumsFloat, Tap, channels, codes};
+use sampler::{AddressMode, Filter};
+
+use super::course::{Course, total};
+use super::finish::{Codes, Colours, pick, summed};
+use super::plan::{Line, Plan};
+use super::{PackedPyramid, PacketFootprint};
+use crate::sample::{MipFilter, SamplerState};
+
+/// The texels that sixteen footprints read, found once for all textures of a shape.
+///
+/// Textures for which [`PackedPyramid::is_alike`] holds share them: what finds levels, probes and weights is done once
+/// for the colours, the normals and the roughness of a surface. Keeps its memory from packet to packet.
+///
+/// Finding taps is a long chain of arithmetic, and reading texels waits for memory: a caller with several packets finds
+/// the taps of some before it reads any, so that neither waits for the other.
+#[derive(Debug, Clone, Default)]
+pub struct Taps {
+    list: Vec<Tap>,
+    a_step: usize,
+    total: Option<[u32; LANES]>,
+    kind: Kind,
+}
+
+/// What taps read.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+enum Kind {
+    /// 2×2 texels, weighted.
+    #[default]
+    Weighted,
+    /// In every lane one texel of one level.
+    Picked,
+}
+
+impl Kind {
+    fn of(texture: &PackedPyramid, state: &SamplerState) -> Self {
+        let nearest = [state.magnify, state.minify] == [Filter::Nearest; 2];
+        let one_level = state.mip != MipFilter::Linear || texture.levels() == 1;
+        let bordered = texture.modes().contains(&AddressMode::ClampToBorder);
+        if nearest && one_level && !bordered && state.max_anisotropy.max(1.0) == 1.0 {
+            Self::Picked
+        } else {
+            Self::Weighted
+        }
+    }
+}
+
+impl Taps {
+    /// Finds them: what [`crate::sample`] reads of the texture by `state`, if [`super::reads`] accepts that.
+    ///
+    /// Other filters are read as the nearest that it accepts: bicubic as bilinear, Gaussian probes as equal ones.
+    #[inline(always)]
+    pub fn find<S: Simd>(
+        &mut self,
+        simd: S,
+        texture: &PackedPyramid,
+        state: &SamplerState,
+        footprint: &PacketFootprint<S>,
+    ) {
+        self.kind = Kind::of(texture, state);
+        if self.kind == Kind::Picked {
+            // So little work that a call would be half of it.
+            let plan = Plan::of(simd, texture, state, footprint);
+            let course = Course::new(simd, texture, state, footprint, &plan);
+            self.begin(1, 1);
+            course.nearest(&mut self.list[0]);
+        } else {
+            simd.vectorize(
+                #[inline(always)]
+                || self.find_weighted(simd, texture, state, footprint),
+            );
+        }
+    }
+
+    #[inline(always)]
+    fn find_weighted<S: Simd>(
+        &mut self,
+        simd: S,
+        texture: &PackedPyramid,
+        state: &SamplerState,
+        footprint: &PacketFootprint<S>,
+    ) {
+        let plan = Plan::of(simd, texture, state, footprint);
+        let course = Course::new(simd, texture, state, footprint, &plan);
+        if plan.is_line {
+            let line = Line::of(simd, texture, &plan);
+            self.begin(2 * course.levels, line.pairs as usize);
+            for (pair, taps) in (0..).zip(self.list.chunks_exact_mut(self.a_step)) {
+                course.pair(&line, pair, taps);
+            }
+            self.total = Some(total(&line).to_array());
+        } else {
+            self.begin(course.levels, 1);
+            course.middle(&mut self.list);
+        }
+    }
+
+    /// Room for so many, whatever they were.
+    #[inline(always)]
+    fn begin(&mut self, taps_a_step: usize, steps: usize) {
+        self.a_step = taps_a_step;
+        self.list.resize(taps_a_step * steps, Tap::NONE);
+        self.total = None;
+    }
+
+    /// The colours that they read of a texture, a packet a channel.
+    ///
+    /// # Accuracy
+    /// See the [module](super).
+    /// # Panics
+    /// If the texture is smaller than the one that they were found for. Of another one of another shape the colours
+    /// mean nothing.
+    #[inline(always)]
+    #[must_use]
+    pub fn sample<S: Simd>(&self, simd: S, texture: &PackedPyramid) -> [f32x16<S>; 4] {
+        channels(self.texels(simd, texture))
+    }
+
+    /// As [`Self::sample`], each channel clamped to 0..=1 and rounded to the nearest 8-bit code, r in the lowest byte.
+    ///
+    /// `out`: up to sixteen pixels, the first lanes'.
+    ///
+    /// # Panics
+    /// As [`Self::sample`], and for more than sixteen pixels.
+    #[inline(always)]
+    pub fn write_codes<S: Simd>(&self, simd: S, texture: &PackedPyramid, out: &mut [u32]) {
+        let codes = match (texture.sheet().texels(), &*self.list) {
+            (SheetTexels::Codes8(texels), [tap]) if self.kind == Kind::Picked => {
+                return pick(texels, tap, out);
+            }
+            (SheetTexels::Codes8(texels), _) => simd.vectorize(
+                #[inline(always)]
+                || summed::<S, Sums8<S>, Codes>(simd, texture, texels, self),
+            ),
+            _ => codes(simd, self.texels(simd, texture)),
+        };
+        if out.len() == LANES {
+            codes.store_slice(out);
+        } else {
+            out.copy_from_slice(&codes.as_slice()[..out.len()]);
+        }
+    }
+
+    /// One function a kind of texel, however many callers.
+    #[inline(always)]
+    fn texels<S: Simd>(&self, simd: S, texture: &PackedPyramid) -> [f32x16<S>; 4] {
+        match texture.sheet().texels() {
+            SheetTexels::Codes8(texels) => simd.vectorize(
+                #[inline(always)]
+                || summed::<S, Sums8<S>, Colours>(simd, texture, texels, self),
+            ),
+            SheetTexels::Codes16(texels) => simd.vectorize(
+                #[inline(always)]
+                || summed::<S, Sums16<S>, Colours>(simd, texture, texels, self),
+            ),
+            SheetTexels::Floats(texels) => simd.vectorize(
+                #[inline(always)]
+                || summed::<S, SumsFloat<S>, Colours>(simd, texture, texels, self),
+            ),
+        }
+    }
+
+    pub(super) fn steps(&self) -> impl Iterator<Item = &[Tap]> {
+        self.list.chunks_exact(self.a_step.max(1))
+    }
+
+    #[inline(always)]
+    pub(super) fn total<S: Simd>(&self, simd: S) -> Option<u32x16<S>> {
+        self.total.map(
+            #[inline(always)]
+            |total| total.simd_into(simd),
+        )
+    }
+}
