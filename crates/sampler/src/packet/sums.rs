@@ -181,12 +181,12 @@ impl<S: Simd> Sums<S> for Sums16<S> {
         let quads = Quads::new(simd, texels, stride, &tap.offsets);
         let beside = u8x64::block_splat(BESIDE.simd_into(simd));
         for group in 0..4 {
-            let mut rows = [[[0u64; 2]; 4]; 2];
-            for lane in 0..4 {
-                rows[0][lane] = quads.upper(4 * group + lane);
-                rows[1][lane] = quads.lower(4 * group + lane);
+            let (mut above, mut below) = ([[0u64; 2]; 4], [[0u64; 2]; 4]);
+            for (lane, (above, below)) in above.iter_mut().zip(&mut below).enumerate() {
+                *above = quads.upper(4 * group + lane);
+                *below = quads.lower(4 * group + lane);
             }
-            for (row, weights) in rows.iter().zip([upper[group], lower[group]]) {
+            for (row, weights) in [(above, upper[group]), (below, lower[group])] {
                 let bytes: u8x64<S> = u64x8::from_slice(simd, row.as_flattened()).bitcast();
                 let codes: u16x32<S> = bytes.swizzle_dyn_within_blocks(beside).bitcast();
                 self.sums[group] += dot(codes, weights);
@@ -268,8 +268,8 @@ impl<S: Simd> Sums<S> for SumsFloat<S> {
     #[inline(always)]
     fn texels(mut self, simd: S, total: u32x16<S>) -> [f32x16<S>; 4] {
         let scales = repeated_floats(f32x16::splat(simd, ONE as f32) / f32x16::float_from(total));
-        for group in 0..4 {
-            self.0[group] *= scales[group];
+        for (sum, scale) in self.0.iter_mut().zip(scales) {
+            *sum *= scale;
         }
         self.0
     }
