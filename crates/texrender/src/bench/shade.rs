@@ -1,15 +1,16 @@
 //! The pixels of a tile, 16 at a time, whatever triangles they see.
 
-use fearless_simd::{Simd, f32x4, f32x16, prelude::*, u32x16};
+use fearless_simd::{Simd, f32x4, f32x16, mask32x16, prelude::*, u32x16};
 use glam::UVec2;
 use mipmap::SamplerState;
 use mipmap::packet::{PackedPyramid, PacketFootprint, sample, sample_codes};
-use raster::{Frame, OwnerRows, Owners, SurfacePacket, VisibilityTile, surface_packet};
-use texcoord::packet::{F64x16, LANES};
+use raster::{Frame, SurfacePacket, VisibilityTile};
+use texcoord::packet::{F64x16, LANES, PacketWeights, columns};
 use texcoord::planes::{CoordinatePlanes, PacketCoordinates};
 use texcoord::unrolled::{four, three, two};
 
 use super::light::{Vectors, codes, lit, mapped_normal, normalized};
+use super::mixed::{Mixed, Single};
 use super::picture::CLEAR;
 use super::scene::{Scene, Shader};
 
@@ -35,6 +36,15 @@ struct LastPlanes {
     planes: CoordinatePlanes,
 }
 
+/// Corners of the triangles that 16 pixels see, on their way while the packet before is shaded.
+#[derive(Clone, Copy)]
+struct Corners<S: Simd, const ROWS: usize> {
+    covered: mask32x16<S>,
+    surfaces: SurfacePacket<S>,
+    /// Attributes of the corners, row by row.
+    rows: [[[f32x16<S>; 4]; 3]; ROWS],
+}
+
 impl TileShader<'_> {
     /// Writes the pixels of a tile to the rows of the picture that it covers.
     #[inline(always)]
@@ -46,58 +56,25 @@ impl TileShader<'_> {
     ) {
         let corner = visibility.rect().min;
         let mut last = None;
+        let mut mixed = Mixed::of(visibility.owners());
         for (y, row) in rows.iter_mut().enumerate() {
-            let owners = match visibility.owners() {
-                Owners::Single(None) => {
-                    row.fill(CLEAR);
-                    continue;
-                }
-                Owners::Single(Some(owner)) => Row::Same(owner),
-                Owners::Each(owners) => Row::Each(owners.row(y, 0)),
-            };
             for (k, pixels) in row.chunks_mut(LANES).enumerate() {
                 let at = [k * LANES, y];
-                let found = match owners {
-                    Row::Same(owner) => self.one_triangle(simd, owner, corner, at, &mut last),
-                    Row::Each(row) => {
-                        let owners = &row[k * LANES..][..LANES];
-                        self.packet(simd, owners, corner, at, &mut last)
+                match mixed.single(simd, at) {
+                    Single::Nobody => pixels.fill(CLEAR),
+                    Single::One(owner) if self.scene.shader == Shader::Texture => {
+                        let found = self.one_triangle(simd, owner, corner, at, &mut last);
+                        store(found, pixels);
                     }
-                };
-                if pixels.len() == LANES {
-                    found.store_slice(pixels);
-                } else {
-                    pixels.copy_from_slice(&found.as_slice()[..pixels.len()]);
+                    _ => mixed.places.push(at),
                 }
             }
         }
-    }
-
-    /// Sixteen pixels of a row and who they belong to.
-    #[inline(always)]
-    fn packet<S: Simd>(
-        &self,
-        simd: S,
-        owners: &[u32],
-        corner: UVec2,
-        at: [usize; 2],
-        last: &mut Option<LastPlanes>,
-    ) -> u32x16<S> {
-        let lanes = u32x16::from_slice(simd, owners);
-        let clear = u32x16::splat(simd, CLEAR);
-        let first = owners[0];
-        if lanes.simd_eq(first).all_true() {
-            return match first {
-                OwnerRows::NOBODY => clear,
-                owner => self.one_triangle(simd, owner, corner, at, last),
-            };
+        match self.scene.shader {
+            Shader::Texture => self.mixed::<S, 1>(simd, &mixed, corner, rows),
+            Shader::Lit => self.mixed::<S, 2>(simd, &mixed, corner, rows),
+            Shader::NormalMapped => self.mixed::<S, 3>(simd, &mixed, corner, rows),
         }
-        let covered = !lanes.simd_eq(OwnerRows::NOBODY);
-        // Lanes without a triangle take part in somebody's.
-        let lane = covered.to_bitmask().trailing_zeros() as usize;
-        let owners = covered.select(lanes, u32x16::splat(simd, owners[lane]));
-        let found = self.many_triangles(simd, &owners.to_array(), pixel(corner, at));
-        covered.select(found, clear)
     }
 
     /// Sixteen pixels of one triangle: inlined, so that its planes stay in registers along a row.
@@ -110,9 +87,6 @@ impl TileShader<'_> {
         at: [usize; 2],
         last: &mut Option<LastPlanes>,
     ) -> u32x16<S> {
-        if self.scene.shader != Shader::Texture {
-            return self.many_triangles(simd, &[owner; LANES], pixel(corner, at));
-        }
         let planes = match last {
             Some(last) if last.owner == owner => &last.planes,
             _ => {
@@ -142,39 +116,88 @@ impl TileShader<'_> {
         CoordinatePlanes::new(&surface.edges_at(corner), surface.inv_w, st)
     }
 
-    /// Sixteen pixels, each of a triangle of its own.
+    /// Packets of pixels, each of a triangle of its own, by a shader that reads `ROWS` rows of attributes.
     ///
-    /// One function however many callers: inlined it is 20 KiB of code each, for each instruction set.
+    /// A function of its own, not inlined into each row's loop: 20 KiB of code for each instruction set.
     #[inline(never)]
-    fn many_triangles<S: Simd>(&self, simd: S, owners: &[u32; LANES], first: UVec2) -> u32x16<S> {
+    fn mixed<S: Simd, const ROWS: usize>(
+        &self,
+        simd: S,
+        mixed: &Mixed<'_>,
+        corner: UVec2,
+        rows: &mut [&mut [u32]],
+    ) {
         simd.vectorize(
             #[inline(always)]
-            || self.mixed_triangles(simd, owners, first),
-        )
+            || {
+                let Some(&first) = mixed.places.first() else {
+                    return;
+                };
+                // The one that is shaded and the one on its way, in turn.
+                let mut slots = [self.corners::<S, ROWS>(simd, mixed, first); 2];
+                for (k, &at) in mixed.places.iter().enumerate() {
+                    let [even, odd] = &mut slots;
+                    let (now, next) = if k % 2 == 0 { (even, odd) } else { (odd, even) };
+                    if let Some(&after) = mixed.places.get(k + 1) {
+                        *next = self.corners(simd, mixed, after);
+                    }
+                    let found = self.packet(simd, now, pixel(corner, at));
+                    let found = now.covered.select(found, u32x16::splat(simd, CLEAR));
+                    let row = &mut rows[at[1]][at[0]..];
+                    let width = row.len().min(LANES);
+                    store(found, &mut row[..width]);
+                }
+            },
+        );
     }
 
     #[inline(always)]
-    fn mixed_triangles<S: Simd>(&self, simd: S, owners: &[u32; LANES], first: UVec2) -> u32x16<S> {
-        let surfaces = surface_packet(simd, self.frame, owners, first);
-        let corners = self.rows(simd, 0, &surfaces);
-        let coordinates = coordinates(&surfaces, &corners);
+    fn corners<S: Simd, const ROWS: usize>(
+        &self,
+        simd: S,
+        mixed: &Mixed<'_>,
+        at: [usize; 2],
+    ) -> Corners<S, ROWS> {
+        let (owners, covered) = mixed.owners(simd, at);
+        let surfaces = SurfacePacket::gather(simd, self.frame, &owners);
+        let mut rows = [[[f32x16::splat(simd, 0.0); 4]; 3]; ROWS];
+        for (row, attributes) in rows.iter_mut().enumerate() {
+            *attributes = self.row(simd, row, &surfaces);
+        }
+        Corners {
+            covered,
+            surfaces,
+            rows,
+        }
+    }
+
+    #[inline(always)]
+    fn packet<S: Simd, const ROWS: usize>(
+        &self,
+        simd: S,
+        corners: &Corners<S, ROWS>,
+        first: UVec2,
+    ) -> u32x16<S> {
+        let Corners { surfaces, rows, .. } = corners;
+        let weights = surfaces.weights(simd, self.frame, first);
+        let coordinates = coordinates(&weights, &rows[0]);
         let footprint = footprint(self.textures[0], &coordinates);
-        if self.scene.shader == Shader::Texture {
+        if ROWS == 1 {
             return sample_codes(simd, self.textures[0], self.state, &footprint);
         }
         let [r, g, b, _] = sample(simd, self.textures[0], self.state, &footprint);
         let weights = three(
             #[inline(always)]
-            |k| surfaces.weights.weights[k].narrow(),
+            |k| weights.weights[k].narrow(),
         );
-        let [_, _, nx, ny] = mixed(&weights, &corners);
-        let [nz, px, py, pz] = mixed(&weights, &self.rows(simd, 1, &surfaces));
+        let [_, _, nx, ny] = mixed(&weights, &rows[0]);
+        let [nz, px, py, pz] = mixed(&weights, &rows[1]);
         let (normal, position) = ([nx, ny, nz], [px, py, pz]);
-        let to_eye = self.eye_direction(simd, &surfaces, position);
-        let (normal, highlight) = if self.scene.shader == Shader::NormalMapped {
+        let to_eye = self.eye_direction(simd, surfaces, position);
+        let (normal, highlight) = if ROWS == 3 {
             let [x, y, z, _] = sample(simd, self.textures[1], self.state, &footprint);
             let [strength, ..] = sample(simd, self.textures[2], self.state, &footprint);
-            let [tx, ty, tz, _] = mixed(&weights, &self.rows(simd, 2, &surfaces));
+            let [tx, ty, tz, _] = mixed(&weights, &rows[2]);
             let normal = mapped_normal(simd, normal, [tx, ty, tz], [x, y, z]);
             (normal, strength * MAPPED_HIGHLIGHT)
         } else {
@@ -191,25 +214,40 @@ impl TileShader<'_> {
         surfaces: &SurfacePacket<S>,
         position: Vectors<S>,
     ) -> Vectors<S> {
-        let mut places = [[0.0f32; LANES]; 3];
-        for (lane, vertices) in surfaces.vertices.iter().enumerate() {
-            let place = self.scene.instances[(vertices[0] >> self.vertex_bits) as usize];
-            for (axis, lanes) in places.iter_mut().enumerate() {
-                lanes[lane] = place[axis];
-            }
-        }
+        let instances = u32x16::from_slice(simd, &surfaces.vertices[0]) >> self.vertex_bits;
+        let place = if instances.simd_eq(instances[0]).all_true() {
+            let place = self.scene.instances[instances[0] as usize];
+            three(
+                #[inline(always)]
+                |axis| f32x16::splat(simd, place[axis]),
+            )
+        } else {
+            self.places(simd, &instances.to_array())
+        };
+        three(
+            #[inline(always)]
+            |axis| f32x16::splat(simd, self.scene.eye[axis]) - (position[axis] + place[axis]),
+        )
+    }
+
+    /// Places of instances, lane by lane.
+    #[inline(always)]
+    fn places<S: Simd>(&self, simd: S, instances: &[u32; LANES]) -> Vectors<S> {
         three(
             #[inline(always)]
             |axis| {
-                let place = f32x16::from_slice(simd, &places[axis]);
-                f32x16::splat(simd, self.scene.eye[axis]) - (position[axis] + place)
+                f32x16::from_fn(
+                    simd,
+                    #[inline(always)]
+                    |lane| self.scene.instances[instances[lane] as usize][axis],
+                )
             },
         )
     }
 
     /// A row of attributes at the three corners of each lane, attribute by attribute.
     #[inline(always)]
-    fn rows<S: Simd>(
+    fn row<S: Simd>(
         &self,
         simd: S,
         row: usize,
@@ -219,20 +257,16 @@ impl TileShader<'_> {
         three(
             #[inline(always)]
             |corner| {
-                let mut lanes = [0.0f32; 4 * LANES];
-                for (lane, out) in lanes.as_chunks_mut::<4>().0.iter_mut().enumerate() {
-                    *out = rows[self.vertex(surfaces.vertices[lane][corner])];
-                }
-                let quarters = four(
+                let attributes = columns(
                     #[inline(always)]
-                    |q| f32x4::load_four_interleaved(simd, &lanes[16 * q..16 * (q + 1)]),
+                    |lane| {
+                        let vertex = self.vertex(surfaces.vertices[corner][lane]);
+                        f32x4::from_slice(simd, &rows[vertex]).bitcast()
+                    },
                 );
                 four(
                     #[inline(always)]
-                    |k| {
-                        let low = quarters[0][k].combine(quarters[1][k]);
-                        low.combine(quarters[2][k].combine(quarters[3][k]))
-                    },
+                    |k| attributes[k].bitcast(),
                 )
             },
         )
@@ -245,11 +279,14 @@ impl TileShader<'_> {
     }
 }
 
-/// Owners of a row.
-#[derive(Clone, Copy)]
-enum Row<'a> {
-    Same(u32),
-    Each(&'a [u32]),
+/// Writes as many of 16 pixels as there is room for.
+#[inline(always)]
+fn store<S: Simd>(found: u32x16<S>, pixels: &mut [u32]) {
+    if pixels.len() == LANES {
+        found.store_slice(pixels);
+    } else {
+        pixels.copy_from_slice(&found.as_slice()[..pixels.len()]);
+    }
 }
 
 /// A pixel of the target from its place in a tile.
@@ -271,10 +308,9 @@ fn mixed<S: Simd>(weights: &[f32x16<S>; 3], corners: &[[f32x16<S>; 4]; 3]) -> [f
 /// Texture coordinates and derivatives from the first two attributes: in f64, measured from corner 0.
 #[inline(always)]
 fn coordinates<S: Simd>(
-    surfaces: &SurfacePacket<S>,
+    weights: &PacketWeights<S>,
     corners: &[[f32x16<S>; 4]; 3],
 ) -> PacketCoordinates<S> {
-    let weights = &surfaces.weights;
     let toward = two(
         #[inline(always)]
         |axis| {
