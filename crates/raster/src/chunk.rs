@@ -3,14 +3,14 @@
 use fearless_simd::{Simd, i32x16, prelude::*};
 use glam::DVec4;
 use texcoord::packet::LANES;
-use texcoord::unrolled::{three, two};
+use texcoord::unrolled::three;
 
 use crate::bins::for_each_tile;
+use crate::corners::{PacketCorners, PacketTest};
 use crate::samples::SampleExtent;
 use crate::setup::Corners;
 use crate::tile::TileGrid;
-use crate::vertex::{BEYOND, CLIPPED, ScreenVertex};
-use crate::viewport::SUBPIXELS;
+use crate::vertex::ScreenVertex;
 use crate::{Cull, Triangle, assemble_triangle};
 
 /// Most triangles of a mesh in a [`Chunk`].
@@ -22,11 +22,32 @@ pub(crate) const PIECE: u32 = 1 << 15;
 // A triangle is cut into seven pieces at most; those of a chunk have numbers below the bit.
 const _: () = assert!(CHUNK_TRIANGLES * 7 < 1 << 15);
 
-/// A whole triangle on the screen: who its corners are.
+/// A whole triangle on the screen.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Whole {
-    pub(crate) vertices: [u32; 3],
-    pub(crate) source: u32,
+    /// Four words that packets take in one load: its corners among the vertices of the frame, and its source.
+    pub(crate) words: [u32; 4],
+}
+
+impl Whole {
+    fn new([a, b, c]: [u32; 3], source: u32) -> Self {
+        Self {
+            words: [a, b, c, source],
+        }
+    }
+
+    /// Its corners among the vertices of the frame.
+    #[inline(always)]
+    pub(crate) fn vertices(&self) -> [u32; 3] {
+        let [a, b, c, _] = self.words;
+        [a, b, c]
+    }
+
+    /// The caller's number of it.
+    #[inline(always)]
+    pub(crate) fn source(&self) -> u32 {
+        self.words[3]
+    }
 }
 
 /// What clipping left of a triangle.
@@ -58,13 +79,22 @@ pub struct MeshPart<'a, C> {
 pub struct Chunk {
     pub(crate) wholes: Vec<Whole>,
     pub(crate) pieces: Vec<Piece>,
-    /// Tile and item, as they come.
-    touched: Vec<(u32, u32)>,
-    /// The first tile touched and the number of those from there to the last.
+    /// Tiles and what touches them, as they come.
+    touched: Vec<(u32, Run)>,
+    /// The first tile touched.
     first_tile: u32,
+    /// Where the runs of each tile from there to the last begin, and where the last end.
     starts: Vec<u32>,
-    items: Vec<u32>,
+    runs: Vec<Run>,
     cut: Vec<Triangle>,
+}
+
+/// Items that touch the same tile, one after another. Neighbours in a mesh do, so a tile has few runs.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Run {
+    /// A whole triangle or a piece; so are the others.
+    pub(crate) first: u32,
+    pub(crate) count: u32,
 }
 
 /// What the assembly of all chunks shares.
@@ -75,41 +105,24 @@ pub(crate) struct Target<'a> {
     pub(crate) extent: &'a SampleExtent,
 }
 
-/// Sixteen triangles: corner by corner their places on the screen.
-struct PacketCorners {
-    positions: [[[i32; 2]; LANES]; 3],
-    /// Lanes that must be clipped.
-    clipped: u32,
-    /// Lanes that are all beyond one plane.
-    outside: u32,
-}
-
-/// What is known of 16 triangles after the packet test.
-struct PacketTest {
-    /// Lanes that are seen.
-    kept: u32,
-    /// First and last tile, by column and row.
-    tiles: [[[i32; LANES]; 2]; 2],
-}
-
 impl Chunk {
     /// Forgets its triangles.
     pub(crate) fn clear(&mut self) {
         self.wholes.clear();
         self.pieces.clear();
         self.touched.clear();
-        self.items.clear();
+        self.runs.clear();
         self.starts.clear();
     }
 
     /// Items that may touch a tile, in order of submission.
     #[inline]
-    pub(crate) fn of(&self, tile: usize) -> &[u32] {
+    pub(crate) fn of(&self, tile: usize) -> &[Run] {
         let Some(k) = tile.checked_sub(self.first_tile as usize) else {
             return &[];
         };
         match self.starts.get(k..k + 2) {
-            Some(&[start, end]) => &self.items[start as usize..end as usize],
+            Some(&[start, end]) => &self.runs[start as usize..end as usize],
             _ => &[],
         }
     }
@@ -123,17 +136,10 @@ impl Chunk {
     ) {
         self.clear();
         let mut source = part.first_source;
-        let mut packets = part.triangles.chunks(LANES);
-        // Gathered one ahead: what was just written lane by lane is slow to be read as a whole.
-        let (vertices, first) = (target.vertices, part.first_vertex);
-        let mut next = packets.next();
-        let mut ahead = PacketCorners::gather(vertices, first, next.unwrap_or_default());
-        while let Some(packet) = next {
-            let corners = ahead;
-            next = packets.next();
-            ahead = PacketCorners::gather(vertices, first, next.unwrap_or_default());
+        for packet in part.triangles.chunks(LANES) {
+            let corners = PacketCorners::gather(simd, target.vertices, part.first_vertex, packet);
             let test = corners.test(simd, target, part.cull);
-            let mut left = (test.kept | corners.clipped) & !corners.outside;
+            let mut left = test.kept | corners.clipped;
             while left != 0 {
                 let lane = left.trailing_zeros() as usize;
                 left &= left - 1;
@@ -142,7 +148,7 @@ impl Chunk {
                 if corners.clipped >> lane & 1 == 1 {
                     self.cut(target, part, vertices, source);
                 } else {
-                    self.take(target, &corners, &test, lane, Whole { vertices, source });
+                    self.take(target, &test, lane, Whole::new(vertices, source));
                 }
             }
             source += lane_number(packet.len());
@@ -152,25 +158,14 @@ impl Chunk {
 
     /// Notes a whole triangle and its tiles.
     #[inline(always)]
-    fn take(
-        &mut self,
-        target: &Target<'_>,
-        corners: &PacketCorners,
-        test: &PacketTest,
-        lane: usize,
-        whole: Whole,
-    ) {
+    fn take(&mut self, target: &Target<'_>, test: &PacketTest, lane: usize, whole: Whole) {
         let item = item(self.wholes.len());
         self.wholes.push(whole);
-        let [first, last] = test
-            .tiles
-            .map(|at| at.map(|axis| axis[lane].cast_unsigned()));
-        if first == last {
-            let tile = first[1] * target.grid.columns() + first[0];
-            self.touched.push((tile, item));
+        if test.single >> lane & 1 == 1 {
+            touch(test.tiles[lane], item, &mut self.touched);
             return;
         }
-        let positions = corners.positions.map(|lanes| lanes[lane]);
+        let positions = corners_of(target.vertices, &whole).positions;
         touch_all(target, &positions, item, &mut self.touched);
     }
 
@@ -221,10 +216,10 @@ impl Chunk {
         for k in 2..count + 2 {
             self.starts[k] += self.starts[k - 1];
         }
-        self.items.resize(self.touched.len(), 0);
-        for &(tile, item) in &self.touched {
+        self.runs.resize(self.touched.len(), Run::default());
+        for &(tile, run) in &self.touched {
             let place = &mut self.starts[(tile - first) as usize + 1];
-            self.items[*place as usize] = item;
+            self.runs[*place as usize] = run;
             *place += 1;
         }
         self.starts.truncate(count + 1);
@@ -236,105 +231,25 @@ fn touch_all(
     target: &Target<'_>,
     positions: &[[i32; 2]; 3],
     item: u32,
-    touched: &mut Vec<(u32, u32)>,
+    touched: &mut Vec<(u32, Run)>,
 ) {
     for_each_tile(target.grid, positions, target.extent, |tile| {
-        touched.push((tile, item));
+        touch(tile, item, touched);
     });
 }
 
-impl PacketCorners {
-    #[inline(always)]
-    fn gather(vertices: &[ScreenVertex], first: u32, triangles: &[[u32; 3]]) -> Self {
-        let mut corners = Self {
-            positions: [[[0; 2]; LANES]; 3],
-            clipped: 0,
-            outside: 0,
-        };
-        let mut flags = 0;
-        for (lane, triangle) in triangles.iter().enumerate() {
-            for k in 0..3 {
-                let vertex = &vertices[(triangle[k] + first) as usize];
-                corners.positions[k][lane] = vertex.position;
-                flags |= vertex.flags;
-            }
-        }
-        if flags != 0 {
-            corners.flag(vertices, first, triangles);
-        }
-        corners
-    }
-
-    /// Notes which lanes have to be clipped and which are beyond one plane.
-    #[cold]
-    fn flag(&mut self, vertices: &[ScreenVertex], first: u32, triangles: &[[u32; 3]]) {
-        for (lane, triangle) in triangles.iter().enumerate() {
-            let [a, b, c] = triangle.map(|v| vertices[(v + first) as usize].flags);
-            self.outside |= u32::from(a & b & c & BEYOND != 0) << lane;
-            self.clipped |= u32::from((a | b | c) & CLIPPED != 0) << lane;
-        }
-    }
-
-    /// Which have an area, the side that is asked for, and a sample of the target in their bounding box.
-    #[inline(always)]
-    fn test<S: Simd>(&self, simd: S, target: &Target<'_>, cull: Cull) -> PacketTest {
-        let [(ax, ay), (bx, by), (cx, cy)] = three(
-            #[inline(always)]
-            |k| columns_and_rows(simd, &self.positions[k]),
-        );
-        let low = [ax.min(bx).min(cx), ay.min(by).min(cy)];
-        let high = [ax.max(bx).max(cx), ay.max(by).max(cy)];
-
-        // Pixels with a sample in the box.
-        let viewport = target.grid.viewport();
-        let size = [viewport.width, viewport.height].map(u32::cast_signed);
-        let shift = SUBPIXELS.trailing_zeros();
-        let (from, to) = (target.extent.max, target.extent.min);
-        let first = two(
-            #[inline(always)]
-            |k| ((low[k] + (SUBPIXELS - 1 - from[k])) >> shift).max(0),
-        );
-        let last = two(
-            #[inline(always)]
-            |k| ((high[k] - to[k]) >> shift).min(size[k] - 1),
-        );
-        let seen = first[0].simd_le(last[0]) & first[1].simd_le(last[1]);
-
-        let longest = (high[0] - low[0]).max(high[1] - low[1]);
-        let facing = if longest.simd_lt(1 << 14).all_true() {
-            // Products fit i32.
-            let area = (bx - ax) * (cy - ay) - (by - ay) * (cx - ax);
-            match cull {
-                Cull::None => area.simd_eq(0).to_bitmask() ^ 0xffff,
-                Cull::Back => area.simd_lt(0).to_bitmask(),
-            }
-        } else {
-            self.facing(cull)
-        };
-        let side = target.grid.tile_size().cast_signed();
-        let tile = |at: i32x16<S>| {
-            let lanes = if side & (side - 1) == 0 {
-                at >> side.trailing_zeros()
-            } else {
-                i32x16::from_fn(simd, |i| at[i] / side)
-            };
-            lanes.to_array()
-        };
-        PacketTest {
-            kept: low_half(seen.to_bitmask() & facing) & !self.clipped,
-            tiles: [first.map(tile), last.map(tile)],
-        }
-    }
-
-    /// Lanes that show a side that is asked for, whatever their size.
-    #[cold]
-    fn facing(&self, cull: Cull) -> u64 {
-        (0..LANES).fold(0, |kept, lane| {
-            let [a, b, c] = self.positions.map(|lanes| lanes[lane].map(i64::from));
-            let area = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
-            let keep = area < 0 || (area > 0 && cull == Cull::None);
-            kept | u64::from(keep) << lane
-        })
+/// Notes that an item touches a tile.
+#[inline(always)]
+fn touch(tile: u32, item: u32, touched: &mut Vec<(u32, Run)>) {
+    match touched.last_mut() {
+        Some((last, run)) if *last == tile && run.first + run.count == item => run.count += 1,
+        _ => touched.push((
+            tile,
+            Run {
+                first: item,
+                count: 1,
+            },
+        )),
     }
 }
 
@@ -346,11 +261,6 @@ pub(crate) fn columns_and_rows<S: Simd>(
 ) -> (i32x16<S>, i32x16<S>) {
     let (low, high) = places.as_flattened().split_at(LANES);
     i32x16::from_slice(simd, low).deinterleave(i32x16::from_slice(simd, high))
-}
-
-#[allow(clippy::cast_possible_truncation, reason = "16 lanes have 16 bits")]
-fn low_half(mask: u64) -> u32 {
-    (mask & 0xffff) as u32
 }
 
 #[allow(clippy::cast_possible_truncation, reason = "a packet has 16 lanes")]
@@ -371,12 +281,12 @@ fn item(index: usize) -> u32 {
 pub(crate) fn corners_of(vertices: &[ScreenVertex], whole: &Whole) -> Corners {
     let corners = three(
         #[inline(always)]
-        |k| &vertices[whole.vertices[k] as usize],
+        |k| &vertices[whole.words[k] as usize],
     );
     Corners {
         positions: three(
             #[inline(always)]
-            |k| corners[k].position,
+            |k| corners[k].position(),
         ),
         depth: three(
             #[inline(always)]

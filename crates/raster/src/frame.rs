@@ -6,7 +6,7 @@ use texcoord::packet::LANES;
 use texcoord::unrolled::three;
 
 use crate::batch::Batch;
-use crate::chunk::{CHUNK_TRIANGLES, Chunk, MeshPart, PIECE, Target, corners_of};
+use crate::chunk::{CHUNK_TRIANGLES, Chunk, MeshPart, PIECE, Target, Whole, corners_of};
 use crate::samples::SampleExtent;
 use crate::setup::Corners;
 use crate::tile::TileGrid;
@@ -151,57 +151,76 @@ impl Frame {
     pub fn tile_load(&self, tile: usize) -> usize {
         self.chunks[..self.used]
             .iter()
-            .map(|chunk| chunk.of(tile).len())
+            .flat_map(|chunk| chunk.of(tile))
+            .map(|run| run.count as usize)
             .sum()
     }
 
     /// Draws the triangles of a tile, in order. Owners are those that [`surface`](Self::surface) takes.
     pub fn draw_tile(&self, tile: usize, visibility: &mut VisibilityTile) {
-        let (chunks, level) = (&self.chunks[..self.used], visibility.level());
-        for (number, chunk) in (0u32..).zip(chunks) {
-            let items = chunk.of(tile);
-            if !items.is_empty() {
-                dispatch!(level, simd => self.draw_items(simd, number, chunk, items, visibility));
+        let mut owners = visibility.take_list();
+        for (number, chunk) in (0u32..).zip(&self.chunks[..self.used]) {
+            for run in chunk.of(tile) {
+                let first = number << ITEM_BITS | run.first;
+                owners.extend(first..first + run.count);
+            }
+        }
+        dispatch!(visibility.level(), simd => self.draw_owners(simd, &owners, visibility));
+        visibility.give_list(owners);
+    }
+
+    #[inline(always)]
+    fn draw_owners<S: Simd>(&self, simd: S, owners: &[u32], visibility: &mut VisibilityTile) {
+        let single = visibility.pattern().count() == 1;
+        for owners in owners.chunks(LANES) {
+            let mut lanes = [owners[0]; LANES];
+            lanes[..owners.len()].copy_from_slice(owners);
+            if single && self.are_whole(&lanes) {
+                let batch = Batch::gather(simd, self, &lanes, owners.len() - 1);
+                if visibility.draw_batch(simd, &batch) {
+                    continue;
+                }
+            }
+            for &owner in owners {
+                visibility.draw_corners(simd, owner, &self.corners(owner));
             }
         }
     }
 
+    /// Whether no owner is a piece of a triangle.
     #[inline(always)]
-    fn draw_items<S: Simd>(
-        &self,
-        simd: S,
-        number: u32,
-        chunk: &Chunk,
-        items: &[u32],
-        visibility: &mut VisibilityTile,
-    ) {
-        if visibility.pattern().count() > 1 {
-            for &item in items {
-                visibility.draw_corners(
-                    simd,
-                    number << ITEM_BITS | item,
-                    &self.corners(chunk, item),
-                );
-            }
-            return;
-        }
-        let mut batch = Batch::new();
-        for items in items.chunks(LANES) {
-            batch.clear();
-            for &item in items {
-                batch.push(number << ITEM_BITS | item, &self.corners(chunk, item));
-            }
-            visibility.draw_batch(simd, &mut batch);
-        }
+    pub(crate) fn are_whole(&self, owners: &[u32; LANES]) -> bool {
+        owners.iter().fold(0, |all, &owner| all | owner) & PIECE == 0
+    }
+
+    /// The triangle of an owner that is not a piece.
+    #[inline(always)]
+    pub(crate) fn whole(&self, owner: u32) -> &Whole {
+        let chunk = &self.chunks[(owner >> ITEM_BITS) as usize];
+        &chunk.wholes[(owner & ((1 << ITEM_BITS) - 1)) as usize]
     }
 
     #[inline(always)]
-    fn corners(&self, chunk: &Chunk, item: u32) -> Corners {
+    fn corners(&self, owner: u32) -> Corners {
+        let chunk = &self.chunks[(owner >> ITEM_BITS) as usize];
+        let item = owner & ((1 << ITEM_BITS) - 1);
         if item & PIECE == 0 {
             corners_of(&self.vertices, &chunk.wholes[item as usize])
         } else {
             chunk.pieces[(item ^ PIECE) as usize].triangle.corners()
         }
+    }
+
+    /// Corners of 16 triangles that may be pieces, of what they were cut from, corner by corner.
+    #[cold]
+    pub(crate) fn corners_of_any(&self, owners: &[u32; LANES]) -> [[u32; LANES]; 3] {
+        let surfaces = owners.map(|owner| self.surface(owner).vertices);
+        [0, 1, 2].map(|k| surfaces.map(|vertices| vertices[k]))
+    }
+
+    #[inline(always)]
+    pub(crate) fn vertex(&self, vertex: u32) -> &ScreenVertex {
+        &self.vertices[vertex as usize]
     }
 
     /// The triangle that owns a sample.
@@ -220,14 +239,14 @@ impl Frame {
         let whole = &chunk.wholes[item as usize];
         let corners = three(
             #[inline(always)]
-            |k| &self.vertices[whole.vertices[k] as usize],
+            |k| &self.vertices[whole.words[k] as usize],
         );
         Surface {
-            source: whole.source,
-            vertices: whole.vertices,
+            source: whole.source(),
+            vertices: whole.vertices(),
             positions: three(
                 #[inline(always)]
-                |k| corners[k].position,
+                |k| corners[k].position(),
             ),
             inv_w: three(
                 #[inline(always)]

@@ -39,7 +39,7 @@
 //! [`Frame`] is the same for whole meshes, sixteen vertices, triangles and pixels at a time, in memory that is used
 //! again: [`project`] puts vertices on the screen, an [`Assembler`] fills a [`Chunk`] from each [`MeshPart`],
 //! [`Frame::draw_tile`] draws what a tile needs. The caller spreads each step over his threads.
-//! [`VisibilityTile::owners`] and [`surface_packet`] serve those that shade sixteen pixels at once.
+//! [`VisibilityTile::owners`] and [`SurfacePacket`] serve those that shade sixteen pixels at once.
 //!
 //! # Coverage
 //! A sample is covered where E ≥ 0 for all three edges, or E > 0 where the edge is neither a left nor a top edge.
@@ -80,11 +80,14 @@ mod bins;
 mod buffer;
 mod chunk;
 mod clip;
+mod corners;
+mod covered;
 mod depth;
 mod edge;
 mod error;
 mod frame;
 mod layer;
+mod owners;
 mod packet;
 mod planes;
 mod samples;
@@ -103,7 +106,8 @@ pub use bins::{Bins, Touch};
 pub use chunk::{CHUNK_TRIANGLES, Chunk, MeshPart};
 pub use error::Error;
 pub use frame::{Assembler, Frame, MAX_CHUNKS, Surface};
-pub use packet::{SurfacePacket, surface_packet};
+pub use owners::{OwnerRows, Owners};
+pub use packet::SurfacePacket;
 pub use planes::{DepthFunction, Planes};
 pub use samples::{MAX_SAMPLES, SamplePattern};
 pub use stroke::{assemble_line, assemble_point};
@@ -111,4 +115,4 @@ pub use tile::{MAX_TILE_SIZE, Rect, TILE_SIZE, TileGrid};
 pub use triangle::{Facing, Triangle};
 pub use vertex::{ScreenVertex, project};
 pub use viewport::{MAX_DIMENSION, SUBPIXELS, Viewport};
-pub use visibility::{OwnerRows, Owners, VisibilityTile};
+pub use visibility::VisibilityTile;

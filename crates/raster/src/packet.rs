@@ -1,162 +1,281 @@
 //! What 16 pixels of a row see, each a triangle of its own: weights and corners, for those that shade them.
 
-use fearless_simd::{Simd, i32x16, prelude::*};
+use fearless_simd::{Simd, f32x16, i32x16, prelude::*, u32x4, u32x16};
 use glam::{DVec3, UVec2};
-use texcoord::packet::{F64x16, LANES, PacketWeights, quick_weights};
+use texcoord::packet::{F64x16, LANES, PacketWeights, columns, near_weights, quick_weights};
 use texcoord::planes::ScreenEdges;
 use texcoord::unrolled::three;
 
+use crate::chunk::columns_and_rows;
 use crate::viewport::SUBPIXELS;
 use crate::{Frame, Surface};
 
-/// Weights and corners of the triangles that 16 pixels see at their centres.
+/// The triangles that 16 pixels of a row see: first who and where their corners are, then what they weigh.
+///
+/// Two steps, so that the caller can have the corners of the next packet on their way while it works on this one.
 #[derive(Clone, Copy, Debug)]
 pub struct SurfacePacket<S: Simd> {
-    /// Weights of the corners of the whole triangles, also where a pixel sees a piece that clipping left.
-    pub weights: PacketWeights<S>,
-    /// Their corners among the vertices of the frame, lane by lane.
-    pub vertices: [[u32; 3]; LANES],
+    /// Their corners among the vertices of the frame, corner by corner a lane each.
+    pub vertices: [[u32; LANES]; 3],
+    owners: [u32; LANES],
+    /// The first words of the vertices, unless a triangle is a piece of one: columns, rows, 1/w.
+    words: [[u32x16<S>; 3]; 3],
+    are_whole: bool,
 }
 
-/// Corners of 16 triangles, corner by corner and lane by lane.
-struct Gathered {
-    xy: [[[i32; 2]; LANES]; 3],
-    inv_w: [[f64; LANES]; 3],
-    vertices: [[u32; 3]; LANES],
-    /// Lanes whose triangle is a piece of one.
-    cut: u32,
+/// Units from a pixel's centre to where a near corner must lie, each way: sums of products fit 32 bits.
+const NEAR: i32 = 1 << 14;
+
+/// Where the corners of 16 triangles lie from the centres of 16 pixels, in units.
+struct Places<S: Simd> {
+    x: [i32x16<S>; 3],
+    y: [i32x16<S>; 3],
 }
 
-impl Gathered {
+impl<S: Simd> SurfacePacket<S> {
+    /// The triangles of 16 owners.
+    ///
+    /// # Panics
+    /// If an owner is not one that the frame gave.
     #[inline(always)]
-    fn new(frame: &Frame, owners: &[u32; LANES]) -> Self {
-        let mut all = Self {
-            xy: [[[0; 2]; LANES]; 3],
-            inv_w: [[0.0; LANES]; 3],
-            vertices: [[0; 3]; LANES],
-            cut: 0,
-        };
-        for (lane, &owner) in owners.iter().enumerate() {
-            let surface = frame.surface(owner);
-            for k in 0..3 {
-                all.xy[k][lane] = surface.positions[k];
-                all.inv_w[k][lane] = surface.inv_w[k];
-            }
-            all.vertices[lane] = surface.vertices;
-            all.cut |= u32::from(surface.piece.is_some()) << lane;
+    #[must_use]
+    pub fn gather(simd: S, frame: &Frame, owners: &[u32; LANES]) -> Self {
+        if !frame.are_whole(owners) {
+            return Self {
+                vertices: frame.corners_of_any(owners),
+                owners: *owners,
+                words: [[u32x16::splat(simd, 0); 3]; 3],
+                are_whole: false,
+            };
         }
-        all
+        let mut vertices = [[0; LANES]; 3];
+        for (lane, &owner) in owners.iter().enumerate() {
+            let [a, b, c] = frame.whole(owner).vertices();
+            (vertices[0][lane], vertices[1][lane], vertices[2][lane]) = (a, b, c);
+        }
+        let words = three(
+            #[inline(always)]
+            |k| {
+                let [x, y, inv_w, _] = columns(
+                    #[inline(always)]
+                    |lane| u32x4::from_slice(simd, &frame.vertex(vertices[k][lane]).words),
+                );
+                [x, y, inv_w]
+            },
+        );
+        Self {
+            vertices,
+            owners: *owners,
+            words,
+            are_whole: true,
+        }
+    }
+
+    /// Weights of the corners at the centres of 16 pixels of a row, the first of them `first`; of the corners of the
+    /// whole triangles, also where a pixel sees a piece that clipping left.
+    ///
+    /// `frame`: the one that the owners are of. A pixel whose centre is outside of its triangle gets weights that
+    /// extrapolate.
+    ///
+    /// # Accuracy
+    /// On exact edge values: where every lane's triangle is whole and lies within 64 pixels of the lane's centre as
+    /// [`texcoord::packet::near_weights`], else as [`texcoord::packet::quick_weights`].
+    #[inline(always)]
+    #[must_use]
+    pub fn weights(&self, simd: S, frame: &Frame, first: UVec2) -> PacketWeights<S> {
+        if self.are_whole {
+            let words = &self.words;
+            let corners = three(
+                #[inline(always)]
+                |k| [words[k][0].bitcast(), words[k][1].bitcast()],
+            );
+            let places = Places::new(simd, first, corners);
+            if places.are_near(simd) {
+                let inv_w = three(
+                    #[inline(always)]
+                    |k| words[k][2].bitcast(),
+                );
+                return places.near_weights(simd, &inv_w);
+            }
+        }
+        any_weights(simd, frame, &self.owners, first)
     }
 }
 
-/// Weights at the centres of 16 pixels of a row, the first of them `first`, in the triangle that each lane names.
-///
-/// A pixel whose centre is outside of its triangle gets weights that extrapolate.
-///
-/// # Accuracy
-/// As [`texcoord::packet::quick_weights`] on exact edge values.
-/// # Panics
-/// If an owner is not one that the frame gave.
-#[inline(always)]
-pub fn surface_packet<S: Simd>(
+/// Weights in triangles of any size, and in pieces of them.
+#[inline(never)]
+fn any_weights<S: Simd>(
     simd: S,
     frame: &Frame,
     owners: &[u32; LANES],
     first: UVec2,
-) -> SurfacePacket<S> {
-    let Gathered {
-        xy,
-        inv_w,
-        vertices,
-        cut,
-    } = Gathered::new(frame, owners);
-
-    // Corners from each pixel's centre: edges are cross products of two, exact in f64.
-    let [left, top] = [first.x, first.y].map(|k| k.cast_signed() * SUBPIXELS + SUBPIXELS / 2);
-    let columns = i32x16::from_fn(simd, lane_units) + left;
-    let places = three(
+) -> PacketWeights<S> {
+    simd.vectorize(
         #[inline(always)]
-        |k| {
-            let (low, high) = xy[k].as_flattened().split_at(LANES);
-            i32x16::from_slice(simd, low).deinterleave(i32x16::from_slice(simd, high))
+        || {
+            let mut xy = [[[0; 2]; LANES]; 3];
+            let mut inv_w = [[0.0; LANES]; 3];
+            for (lane, &owner) in owners.iter().enumerate() {
+                let surface = frame.surface(owner);
+                for k in 0..3 {
+                    xy[k][lane] = surface.positions[k];
+                    inv_w[k][lane] = surface.inv_w[k];
+                }
+            }
+            let corners = three(
+                #[inline(always)]
+                |k| columns_and_rows(simd, &xy[k]).into(),
+            );
+            let inv_w = three(
+                #[inline(always)]
+                |k| F64x16::from_array(simd, &inv_w[k]),
+            );
+            let weights = Places::new(simd, first, corners).weights(simd, &inv_w);
+            if frame.are_whole(owners) {
+                weights
+            } else {
+                remapped(simd, frame, owners, &weights)
+            }
         },
-    );
-    let px = three(
-        #[inline(always)]
-        |k| F64x16::from_integers(simd, places[k].0 - columns),
-    );
-    let py = three(
-        #[inline(always)]
-        |k| F64x16::from_integers(simd, places[k].1 - top),
-    );
-    let inv_w = three(
-        #[inline(always)]
-        |k| F64x16::from_array(simd, &inv_w[k]),
-    );
-    let edges = three(
-        #[inline(always)]
-        |k| {
-            let (i, j) = ((k + 1) % 3, (k + 2) % 3);
-            px[i] * py[j] - py[i] * px[j]
-        },
-    );
-    let unit = F64x16::splat(simd, f64::from(SUBPIXELS));
-    let turn = sign(simd, edges[0] + edges[1] + edges[2]);
-    let (step, zero) = (turn * unit, F64x16::splat(simd, 0.0));
-    let weights = quick_weights(
-        simd,
-        // Adding zero leaves no negative one.
-        &three(
-            #[inline(always)]
-            |k| edges[k] * turn + zero,
-        ),
-        &three(
-            #[inline(always)]
-            |k| (py[(k + 1) % 3] - py[(k + 2) % 3]) * step,
-        ),
-        &three(
-            #[inline(always)]
-            |k| (px[(k + 2) % 3] - px[(k + 1) % 3]) * step,
-        ),
-        &inv_w,
-    );
-    let mut packet = SurfacePacket { weights, vertices };
-    if cut != 0 {
-        packet.remap(simd, frame, owners);
-    }
-    packet
+    )
 }
 
-impl<S: Simd> SurfacePacket<S> {
-    /// From weights in pieces to weights in the triangles that they were cut from.
-    #[cold]
-    fn remap(&mut self, simd: S, frame: &Frame, owners: &[u32; LANES]) {
-        let mut value = self.weights.weights.map(F64x16::to_array);
-        let mut dx = self.weights.d_dx.map(|slope| slope.to_array());
-        let mut dy = self.weights.d_dy.map(|slope| slope.to_array());
-        for (lane, &owner) in owners.iter().enumerate() {
-            let Some(corners) = frame.surface(owner).piece else {
-                continue;
-            };
-            let map = |w: DVec3| corners[0] * w.x + corners[1] * w.y + corners[2] * w.z;
-            let whole = map(DVec3::from_array(value.map(|axis| axis[lane])));
-            let slopes = [&dx, &dy].map(|slope| {
-                map(DVec3::from_array(
-                    [0, 1, 2].map(|k| f64::from(slope[k][lane])),
-                ))
-                .as_vec3()
-            });
-            for k in 0..3 {
-                value[k][lane] = whole[k];
-                dx[k][lane] = slopes[0][k];
-                dy[k][lane] = slopes[1][k];
-            }
+impl<S: Simd> Places<S> {
+    /// From places on the screen, for pixels of a row, the first of them `first`.
+    #[inline(always)]
+    fn new(simd: S, first: UVec2, corners: [[i32x16<S>; 2]; 3]) -> Self {
+        let [left, top] = [first.x, first.y].map(|k| k.cast_signed() * SUBPIXELS + SUBPIXELS / 2);
+        let columns = i32x16::from_fn(simd, lane_units) + left;
+        Self {
+            x: three(
+                #[inline(always)]
+                |k| corners[k][0] - columns,
+            ),
+            y: three(
+                #[inline(always)]
+                |k| corners[k][1] - top,
+            ),
         }
-        self.weights = PacketWeights {
-            weights: value.map(|axis| F64x16::from_array(simd, &axis)),
-            d_dx: dx.map(|slope| slope.simd_into(simd)),
-            d_dy: dy.map(|slope| slope.simd_into(simd)),
+    }
+
+    /// Whether all corners are near.
+    #[inline(always)]
+    fn are_near(&self, simd: S) -> bool {
+        let shifted = three(
+            #[inline(always)]
+            |k| (self.x[k] + NEAR) | (self.y[k] + NEAR),
+        );
+        let all: u32x16<S> = (shifted[0] | shifted[1] | shifted[2]).bitcast();
+        let side = 2 * NEAR.cast_unsigned();
+        all.simd_lt(u32x16::splat(simd, side)).all_true()
+    }
+
+    /// Weights where all corners are near. Edges are exact: below 2²⁹, and their sum below 2³¹.
+    #[inline(always)]
+    fn near_weights(&self, simd: S, inv_w: &[f32x16<S>; 3]) -> PacketWeights<S> {
+        let edges = three(
+            #[inline(always)]
+            |k| {
+                let (i, j) = ((k + 1) % 3, (k + 2) % 3);
+                self.x[i] * self.y[j] - self.y[i] * self.x[j]
+            },
+        );
+        // −1 where the area is negative: it turns edges to be positive inside.
+        let turn = (edges[0] + edges[1] + edges[2]) >> 31;
+        let turned = three(
+            #[inline(always)]
+            |k| ((edges[k] ^ turn) - turn).to_float(),
+        );
+        let step = (turn | 1) << SUBPIXELS.trailing_zeros();
+        near_weights(
+            simd,
+            &turned,
+            &three(
+                #[inline(always)]
+                |k| ((self.y[(k + 1) % 3] - self.y[(k + 2) % 3]) * step).to_float(),
+            ),
+            &three(
+                #[inline(always)]
+                |k| ((self.x[(k + 2) % 3] - self.x[(k + 1) % 3]) * step).to_float(),
+            ),
+            inv_w,
+        )
+    }
+
+    /// Weights wherever the corners are. Edges are cross products of two, exact in f64.
+    #[inline(always)]
+    fn weights(&self, simd: S, inv_w: &[F64x16<S>; 3]) -> PacketWeights<S> {
+        let px = three(
+            #[inline(always)]
+            |k| F64x16::from_integers(simd, self.x[k]),
+        );
+        let py = three(
+            #[inline(always)]
+            |k| F64x16::from_integers(simd, self.y[k]),
+        );
+        let edges = three(
+            #[inline(always)]
+            |k| {
+                let (i, j) = ((k + 1) % 3, (k + 2) % 3);
+                px[i] * py[j] - py[i] * px[j]
+            },
+        );
+        let unit = F64x16::splat(simd, f64::from(SUBPIXELS));
+        let turn = sign(simd, edges[0] + edges[1] + edges[2]);
+        let (step, zero) = (turn * unit, F64x16::splat(simd, 0.0));
+        quick_weights(
+            simd,
+            // Adding zero leaves no negative one.
+            &three(
+                #[inline(always)]
+                |k| edges[k] * turn + zero,
+            ),
+            &three(
+                #[inline(always)]
+                |k| (py[(k + 1) % 3] - py[(k + 2) % 3]) * step,
+            ),
+            &three(
+                #[inline(always)]
+                |k| (px[(k + 2) % 3] - px[(k + 1) % 3]) * step,
+            ),
+            inv_w,
+        )
+    }
+}
+
+/// From weights in pieces to weights in the triangles that they were cut from.
+#[cold]
+fn remapped<S: Simd>(
+    simd: S,
+    frame: &Frame,
+    owners: &[u32; LANES],
+    weights: &PacketWeights<S>,
+) -> PacketWeights<S> {
+    let mut value = weights.weights.map(F64x16::to_array);
+    let mut dx = weights.d_dx.map(|slope| slope.to_array());
+    let mut dy = weights.d_dy.map(|slope| slope.to_array());
+    for (lane, &owner) in owners.iter().enumerate() {
+        let Some(corners) = frame.surface(owner).piece else {
+            continue;
         };
+        let map = |w: DVec3| corners[0] * w.x + corners[1] * w.y + corners[2] * w.z;
+        let whole = map(DVec3::from_array(value.map(|axis| axis[lane])));
+        let slopes = [&dx, &dy].map(|slope| {
+            map(DVec3::from_array(
+                [0, 1, 2].map(|k| f64::from(slope[k][lane])),
+            ))
+            .as_vec3()
+        });
+        for k in 0..3 {
+            value[k][lane] = whole[k];
+            dx[k][lane] = slopes[0][k];
+            dy[k][lane] = slopes[1][k];
+        }
+    }
+    PacketWeights {
+        weights: value.map(|axis| F64x16::from_array(simd, &axis)),
+        d_dx: dx.map(|slope| slope.simd_into(simd)),
+        d_dy: dy.map(|slope| slope.simd_into(simd)),
     }
 }
 

@@ -6,8 +6,10 @@ use texcoord::packet::LANES;
 
 use crate::batch::Batch;
 use crate::buffer::{NOBODY, SampleBuffer};
+use crate::covered::Covered;
 use crate::depth::DepthPlane;
 use crate::layer::Layer;
+use crate::owners::{OwnerRows, Owners};
 use crate::samples::SampleExtent;
 use crate::scan::{Scan, ScanBlock, draw_small, index, signed};
 use crate::setup::{Corners, Extent, Setup};
@@ -48,37 +50,9 @@ pub struct VisibilityTile {
     /// No sample is stored with a greater depth.
     pub(crate) nearest: f32,
     pub(crate) buffer: SampleBuffer,
-}
-
-/// Who owns the samples of a tile, for readers that take many at once.
-#[derive(Clone, Copy, Debug)]
-pub enum Owners<'a> {
-    /// One surface owns them all, or none does.
-    Single(Option<u32>),
-    /// They differ, or may.
-    Each(OwnerRows<'a>),
-}
-
-/// Owners of a tile's samples, row by row.
-#[derive(Clone, Copy, Debug)]
-pub struct OwnerRows<'a> {
-    buffer: &'a SampleBuffer,
-}
-
-impl<'a> OwnerRows<'a> {
-    /// Owner of a sample that nothing was drawn to.
-    pub const NOBODY: u32 = NOBODY;
-
-    /// Owners in the row `y` of the tile, counted from its top, for each pixel the sample `sample`;
-    /// [`NOBODY`](Self::NOBODY) is the background. Filled up to a multiple of 16 with what must be skipped.
-    ///
-    /// # Panics
-    /// If the tile has no such row or sample.
-    #[inline]
-    #[must_use]
-    pub fn row(&self, y: usize, sample: usize) -> &'a [u32] {
-        self.buffer.owner_row(y, sample)
-    }
+    covered: Box<Covered>,
+    /// Memory for the list of what is drawn.
+    list: Vec<u32>,
 }
 
 impl VisibilityTile {
@@ -99,6 +73,8 @@ impl VisibilityTile {
             layer: Some(Layer::BACKGROUND),
             nearest: Layer::BACKGROUND.nearest,
             buffer: SampleBuffer::default(),
+            covered: Box::new(Covered::new()),
+            list: Vec::new(),
         }
     }
 
@@ -121,6 +97,17 @@ impl VisibilityTile {
     /// The instruction set that it draws with.
     pub(crate) fn level(&self) -> Level {
         self.level
+    }
+
+    /// An empty list in memory that is used again: [`give_list`](Self::give_list).
+    pub(crate) fn take_list(&mut self) -> Vec<u32> {
+        let mut list = core::mem::take(&mut self.list);
+        list.clear();
+        list
+    }
+
+    pub(crate) fn give_list(&mut self, list: Vec<u32>) {
+        self.list = list;
     }
 
     /// The pattern that it was made with.
@@ -248,9 +235,17 @@ impl VisibilityTile {
     /// The triangle from the tile's point of view; `None` if it covers no sample of it.
     #[inline(always)]
     pub(crate) fn setup(&self, corners: &Corners) -> Option<Setup> {
-        let origin = self.rect.min.to_array();
-        let origin = origin.map(|k| signed(k as usize) * SUBPIXELS);
-        Setup::new(&corners.positions, origin, self.size(), &self.extent)
+        Setup::new(&corners.positions, self.origin(), self.size(), &self.extent)
+    }
+
+    /// Its top left, in units from the target's.
+    #[inline(always)]
+    fn origin(&self) -> [i32; 2] {
+        let [x, y] = self.rect.min.to_array();
+        [
+            signed(x as usize) * SUBPIXELS,
+            signed(y as usize) * SUBPIXELS,
+        ]
     }
 
     /// Whether the surface that stands for the whole tile hides one no nearer than `nearest`.
@@ -287,22 +282,22 @@ impl VisibilityTile {
         self.draw_large(simd, owner, &setup, setup.plane(corners.depth));
     }
 
-    /// Draws the opaque surfaces of a batch, as if one by one.
+    /// Draws the opaque surfaces of a batch, if all are small; whether they were.
     #[inline(always)]
-    pub(crate) fn draw_batch<S: Simd>(&mut self, simd: S, batch: &mut Batch) {
-        if self.layer.is_none() {
-            let origin = self.rect.min.to_array();
-            let origin = origin.map(|k| signed(k as usize) * SUBPIXELS);
-            let (size, positions) = (self.size(), self.pattern.positions());
-            let (extent, buffer) = (&self.extent, &mut self.buffer);
-            if let Some(nearest) = batch.draw(simd, origin, size, extent, positions, buffer) {
-                self.nearest = self.nearest.max(nearest);
-                return;
-            }
+    pub(crate) fn draw_batch<S: Simd>(&mut self, simd: S, batch: &Batch<S>) -> bool {
+        let surface = |layer: &Layer| layer.owner != NOBODY;
+        if self.layer.as_ref().is_some_and(surface) {
+            return false;
         }
-        for (owner, corners) in batch.triangles() {
-            self.draw_corners(simd, owner, &corners);
-        }
+        let (origin, size) = (self.origin(), self.size());
+        let Some(windows) = batch.windows(simd, origin, size, &self.extent) else {
+            return false;
+        };
+        self.write_layer(simd);
+        let (covered, buffer) = (&mut self.covered, &mut self.buffer);
+        let nearest = batch.draw(simd, &windows, self.pattern.positions(), covered, buffer);
+        self.nearest = self.nearest.max(nearest);
+        true
     }
 
     /// Draws a surface of any size.

@@ -23,9 +23,9 @@
 
 use core::ops::{Add, Div, Mul, Sub};
 
-use crate::unrolled::{three, two};
+use crate::unrolled::{four, three, two};
 
-use fearless_simd::{Simd, f32x16, f64x8, i32x16, mask64x8, prelude::*, u32x16, u64x8};
+use fearless_simd::{Simd, f32x16, f64x8, i32x16, mask64x8, prelude::*, u32x4, u32x16, u64x8};
 
 /// Pixels in a packet, on every instruction set.
 pub const LANES: usize = 16;
@@ -36,6 +36,9 @@ pub const DERIVATIVE_MAX_RELATIVE_ERROR: f64 = 1.0 / 16_777_216.0 + 1e-14;
 
 /// Largest relative difference of a weight of [`quick_weights`]: eight roundings on the one side, six on the other.
 pub const QUICK_WEIGHTS_MAX_RELATIVE_ERROR: f64 = 14.0 * f64::EPSILON / 2.0;
+
+/// Largest difference of a weight of [`near_weights`], relative to the largest of a lane's three: ten roundings to f32.
+pub const NEAR_WEIGHTS_MAX_RELATIVE_ERROR: f64 = 10.0 * f32::EPSILON as f64 / 2.0;
 
 /// Sixteen f64 lanes: 0..8 in the first half, 8..16 in the second. Arithmetic is lane by lane, never fused.
 #[derive(Clone, Copy, Debug)]
@@ -168,6 +171,30 @@ impl<S: Simd> Div for F64x16<S> {
     }
 }
 
+/// Rows of four words, one a lane, as four columns: lane i of column k is word k of `row(i)`.
+///
+/// Rows go from where they lie into registers. Written to an array first, lane by lane, and read back as packets they
+/// would wait for each other.
+#[inline(always)]
+#[must_use]
+pub fn columns<S: Simd>(mut row: impl FnMut(usize) -> u32x4<S>) -> [u32x16<S>; 4] {
+    let quarters = four(
+        #[inline(always)]
+        |q| {
+            let [a, b, c, d] = four(
+                #[inline(always)]
+                |i| row(4 * q + i),
+            );
+            a.combine(b).combine(c.combine(d))
+        },
+    );
+    let (even, odd) = quarters[0].deinterleave(quarters[1]);
+    let (even_after, odd_after) = quarters[2].deinterleave(quarters[3]);
+    let (first, third) = even.deinterleave(even_after);
+    let (second, fourth) = odd.deinterleave(odd_after);
+    [first, second, third, fourth]
+}
+
 /// Perspective-correct weights from the edge values of 16 pixels, each in a triangle of its own.
 ///
 /// Inputs as those of [`crate::perspective_weights`], by corner: `edges` opposite to it, `edges_dx` and `edges_dy`
@@ -266,6 +293,64 @@ pub fn quick_weights<S: Simd>(
         ),
         d_dx: weight_slopes(edges, edges_dx, &pairs, defined, zero),
         d_dy: weight_slopes(edges, edges_dy, &pairs, defined, zero),
+    }
+}
+
+/// [`quick_weights`] in f32, for triangles of few pixels: their edges, whole numbers of the grid, fit it.
+///
+/// Inputs are the same, edges below 2³⁰ and 1/w from 2⁻³⁰ to 2³⁰. A lane whose Σ eᵢ·(1/wᵢ) is not a positive finite
+/// number gets 1/3 each and zero derivatives.
+///
+/// # Accuracy
+/// Inside a triangle weights are within [`NEAR_WEIGHTS_MAX_RELATIVE_ERROR`] of those of [`perspective_weights`], and
+/// derivatives within it times the ratio of the greatest 1/w to the least, relative to the largest of a lane's three.
+/// `tests/properties/packet.rs`.
+#[inline(always)]
+#[must_use]
+pub fn near_weights<S: Simd>(
+    simd: S,
+    edges: &[f32x16<S>; 3],
+    edges_dx: &[f32x16<S>; 3],
+    edges_dy: &[f32x16<S>; 3],
+    inv_w: &[f32x16<S>; 3],
+) -> PacketWeights<S> {
+    let over_w = three(
+        #[inline(always)]
+        |i| edges[i] * inv_w[i],
+    );
+    let sum = over_w[0] + over_w[1] + over_w[2];
+    let (zero, third) = (f32x16::splat(simd, 0.0), f32x16::splat(simd, 1.0 / 3.0));
+    let defined = sum.simd_gt(0.0) & sum.simd_lt(f32::INFINITY);
+    let per_sum = f32x16::splat(simd, 1.0) / sum;
+    let scaled = three(
+        #[inline(always)]
+        |i| inv_w[i] * per_sum,
+    );
+    let pairs = three(
+        #[inline(always)]
+        |i| defined.select(scaled[i] * scaled[(i + 1) % 3], zero),
+    );
+    let [d_dx, d_dy] = two(
+        #[inline(always)]
+        |axis| {
+            let along = [edges_dx, edges_dy][axis];
+            let [a, b, c] = three(
+                #[inline(always)]
+                |i| {
+                    let j = (i + 1) % 3;
+                    (along[i] * edges[j] - edges[i] * along[j]) * pairs[i]
+                },
+            );
+            [a - c, b - a, c - b]
+        },
+    );
+    PacketWeights {
+        weights: three(
+            #[inline(always)]
+            |i| F64x16::widen(defined.select(over_w[i] * per_sum, third)),
+        ),
+        d_dx,
+        d_dy,
     }
 }
 

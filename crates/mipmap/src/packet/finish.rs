@@ -2,7 +2,7 @@
 
 use fearless_simd::prelude::*;
 use fearless_simd::{Simd, f32x16, u32x16};
-use sampler::packet::{ONE, Sums, Tap, codes};
+use sampler::packet::{LANES, ONE, Sums, Tap, codes};
 
 use super::PackedPyramid;
 use super::taps::Taps;
@@ -64,6 +64,15 @@ pub(super) fn summed<S: Simd, A: Sums<S>, F: Finish<S>>(
 #[inline(always)]
 pub(super) fn pick(texels: &[u64], tap: &Tap, out: &mut [u32]) {
     // Straight to where they go: a register put together from single texels takes three times as long.
+    if let Ok(all) = <&mut [u32; LANES]>::try_from(&mut *out) {
+        copy(texels, tap, all);
+    } else {
+        copy(texels, tap, out);
+    }
+}
+
+#[inline(always)]
+fn copy(texels: &[u64], tap: &Tap, out: &mut [u32]) {
     for (code, &offset) in out.iter_mut().zip(tap.offsets()) {
         *code = upper(texels[offset as usize]);
     }

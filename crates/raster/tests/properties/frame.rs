@@ -4,10 +4,10 @@ use fearless_simd::{Level, dispatch, prelude::*};
 use glam::{DVec3, DVec4, IVec2, UVec2};
 use proptest::prelude::*;
 use raster::{
-    Assembly, Bins, Cull, Frame, MeshPart, SamplePattern, TileGrid, Triangle, Viewport,
-    VisibilityTile, assemble_triangle, project, surface_packet,
+    Assembly, Bins, Cull, Frame, MeshPart, SamplePattern, SurfacePacket, TileGrid, Triangle,
+    Viewport, VisibilityTile, assemble_triangle, project,
 };
-use texcoord::packet::{F64x16, LANES};
+use texcoord::packet::{F64x16, LANES, NEAR_WEIGHTS_MAX_RELATIVE_ERROR};
 
 use crate::strategies::{COUNTS, pattern};
 
@@ -202,9 +202,9 @@ fn check_packets(
         let owners: [u32; LANES] =
             core::array::from_fn(|i| lanes.get(i).and_then(owner).unwrap_or(some));
         let (value, dx, dy) = dispatch!(level, simd => {
-            let packet = surface_packet(simd, frame, &owners, first);
+            let weights = SurfacePacket::gather(simd, frame, &owners).weights(simd, frame, first);
             let slopes = |v: [fearless_simd::f32x16<_>; 3]| v.map(|x| x.to_array());
-            (packet.weights.weights.map(F64x16::to_array), slopes(packet.weights.d_dx), slopes(packet.weights.d_dy))
+            (weights.weights.map(F64x16::to_array), slopes(weights.d_dx), slopes(weights.d_dy))
         });
         for (lane, &pixel) in lanes.iter().enumerate() {
             let Some(k) = expected.owner(pixel, 0) else {
@@ -217,7 +217,7 @@ fn check_packets(
             let value = DVec3::from_array(value.map(|axis| axis[lane]));
             let error = (value - truth.value).abs().max_element();
             assert!(
-                error <= 64.0 * f64::EPSILON,
+                error <= NEAR_WEIGHTS_MAX_RELATIVE_ERROR,
                 "{pixel}: {value} {}",
                 truth.value
             );

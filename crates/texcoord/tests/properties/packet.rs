@@ -1,15 +1,15 @@
 //! Packets against the scalar function, on every instruction set of the machine.
 
-use fearless_simd::{Level, Simd, dispatch, prelude::*};
+use fearless_simd::{Level, Simd, dispatch, prelude::*, u32x4};
 use glam::DVec3;
 use proptest::prelude::*;
 use texcoord::packet::{
-    DERIVATIVE_MAX_RELATIVE_ERROR, F64x16, LANES, QUICK_WEIGHTS_MAX_RELATIVE_ERROR,
-    perspective_weights, quick_weights,
+    DERIVATIVE_MAX_RELATIVE_ERROR, F64x16, LANES, NEAR_WEIGHTS_MAX_RELATIVE_ERROR,
+    QUICK_WEIGHTS_MAX_RELATIVE_ERROR, columns, near_weights, perspective_weights, quick_weights,
 };
 
 use crate::oracle;
-use crate::strategies::screen_triangle;
+use crate::strategies::{ScreenTriangle, screen_triangle};
 
 /// Values by corner, then lane.
 type Corners<T> = [[T; LANES]; 3];
@@ -30,11 +30,12 @@ fn levels() -> Vec<Level> {
     levels
 }
 
-/// Which of the two functions.
+/// Which of the functions.
 #[derive(Clone, Copy, PartialEq)]
 enum How {
     Exact,
     Quick,
+    Near,
 }
 
 #[inline(always)]
@@ -44,6 +45,10 @@ fn run<S: Simd>(simd: S, lanes: &[Lane; LANES], how: How) -> (Corners<f64>, [Cor
     let found = match how {
         How::Exact => perspective_weights(simd, &edges, &dx, &dy, &inv_w),
         How::Quick => quick_weights(simd, &edges, &dx, &dy, &inv_w),
+        How::Near => {
+            let [edges, dx, dy, inv_w] = [edges, dx, dy, inv_w].map(|v| v.map(F64x16::narrow));
+            near_weights(simd, &edges, &dx, &dy, &inv_w)
+        }
     };
     let narrow = |v: [fearless_simd::f32x16<S>; 3]| v.map(|x| x.to_array());
     (
@@ -67,6 +72,7 @@ fn check(lanes: &[Lane; LANES], how: How) {
             let agrees = match how {
                 How::Exact => found.to_bits() == truth.to_bits(),
                 How::Quick => error <= QUICK_WEIGHTS_MAX_RELATIVE_ERROR * truth.abs(),
+                How::Near => error <= NEAR_WEIGHTS_MAX_RELATIVE_ERROR,
             };
             assert!(
                 agrees,
@@ -74,8 +80,13 @@ fn check(lanes: &[Lane; LANES], how: How) {
             );
         }
         for (found, truth) in slopes.iter().zip([truth.dx, truth.dy]) {
-            let bound = DERIVATIVE_MAX_RELATIVE_ERROR * truth.abs().max_element()
-                + f64::from(f32::MIN_POSITIVE);
+            let relative = match how {
+                How::Exact | How::Quick => DERIVATIVE_MAX_RELATIVE_ERROR,
+                How::Near => {
+                    NEAR_WEIGHTS_MAX_RELATIVE_ERROR * inv_w.max_element() / inv_w.min_element()
+                }
+            };
+            let bound = relative * truth.abs().max_element() + f64::from(f32::MIN_POSITIVE);
             for i in 0..3 {
                 let error = (f64::from(found[i][lane]) - truth[i]).abs();
                 assert!(
@@ -92,14 +103,53 @@ proptest! {
 
     #[test]
     fn sixteen_lanes_are_sixteen_pixels(triangles in proptest::collection::vec(screen_triangle(), LANES)) {
-        let lanes = core::array::from_fn(|lane| {
-            let triangle: &crate::strategies::ScreenTriangle = &triangles[lane];
-            let vector = |e: [i64; 3]| DVec3::from_array(e.map(|x| x as f64));
-            let [dx, dy] = oracle::edge_gradients(triangle);
-            [vector(oracle::edges(triangle)), vector(dx), vector(dy), triangle.inv_w]
-        });
+        let lanes = core::array::from_fn(|lane| lane_of(&triangles[lane]));
         check(&lanes, How::Exact);
         check(&lanes, How::Quick);
+    }
+}
+
+/// Lanes of triangles with corners up to `reach` units from the screen's corner.
+fn lanes_within(reach: i64) -> impl Strategy<Value = [Lane; LANES]> {
+    let near = screen_triangle().prop_filter_map("a near triangle", move |triangle| {
+        let corners = triangle.corners.as_flattened().iter();
+        let inside = corners.map(|c| c.abs()).max() <= Some(reach);
+        inside.then_some(triangle)
+    });
+    proptest::collection::vec(near, LANES)
+        .prop_map(|triangles| core::array::from_fn(|lane| lane_of(&triangles[lane])))
+}
+
+/// What the pixel of a triangle asks.
+fn lane_of(triangle: &ScreenTriangle) -> Lane {
+    let vector = |e: [i64; 3]| DVec3::from_array(e.map(|x| x as f64));
+    let [dx, dy] = oracle::edge_gradients(triangle);
+    [
+        vector(oracle::edges(triangle)),
+        vector(dx),
+        vector(dy),
+        triangle.inv_w,
+    ]
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(300))]
+
+    #[test]
+    fn near_triangles_need_no_f64(lanes in lanes_within(1 << 12)) {
+        check(&lanes, How::Near);
+    }
+
+    #[test]
+    fn columns_are_rows_turned(rows in proptest::array::uniform16(any::<[u32; 4]>())) {
+        for level in levels() {
+            let found = dispatch!(level, simd => {
+                columns(|lane| u32x4::from_slice(simd, &rows[lane])).map(|c| c.to_array())
+            });
+            for (k, column) in found.iter().enumerate() {
+                prop_assert_eq!(*column, rows.map(|row| row[k]), "{:?}", level);
+            }
+        }
     }
 }
 

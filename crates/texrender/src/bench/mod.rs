@@ -15,6 +15,7 @@ mod draw;
 mod light;
 mod measure;
 mod mesh;
+mod mixed;
 mod picture;
 mod scene;
 mod shade;

@@ -1,15 +1,16 @@
 //! The pixels of a tile, 16 at a time, whatever triangles they see.
 
-use fearless_simd::{Simd, f32x4, f32x16, prelude::*, u32x16};
+use fearless_simd::{Simd, f32x4, f32x16, mask32x16, prelude::*, u32x16};
 use glam::UVec2;
 use mipmap::SamplerState;
 use mipmap::packet::{PackedPyramid, PacketFootprint, Taps};
-use raster::{Frame, OwnerRows, Owners, SurfacePacket, VisibilityTile, surface_packet};
-use texcoord::packet::{F64x16, LANES};
+use raster::{Frame, SurfacePacket, VisibilityTile};
+use texcoord::packet::{F64x16, LANES, PacketWeights, columns};
 use texcoord::planes::{CoordinatePlanes, PacketCoordinates};
 use texcoord::unrolled::{four, three, two};
 
 use super::light::{Vectors, codes, lit, mapped_normal, normalized};
+use super::mixed::{Mixed, Single};
 use super::picture::CLEAR;
 use super::scene::{Scene, Shader};
 
@@ -35,6 +36,15 @@ struct LastPlanes {
     planes: CoordinatePlanes,
 }
 
+/// Corners of the triangles that 16 pixels see, on their way while the packet before is shaded.
+#[derive(Clone, Copy)]
+struct Corners<S: Simd, const ROWS: usize> {
+    covered: mask32x16<S>,
+    surfaces: SurfacePacket<S>,
+    /// Attributes of the corners, row by row.
+    rows: [[[f32x16<S>; 4]; 3]; ROWS],
+}
+
 /// Packets of a tile's row.
 const PACKETS: usize = 4;
 
@@ -53,93 +63,46 @@ impl TileShader<'_> {
     ) {
         let corner = visibility.rect().min;
         let mut last = None;
+        let mut mixed = Mixed::of(visibility.owners());
         for (y, row) in rows.iter_mut().enumerate() {
-            let owners = match visibility.owners() {
-                Owners::Single(None) => {
-                    row.fill(CLEAR);
-                    continue;
+            // The taps of all packets before the texels of any: neither waits for the other.
+            let mut found = [false; PACKETS];
+            let packets = row.chunks_mut(LANES).zip(&mut *taps).zip(&mut found);
+            for (k, ((pixels, taps), found)) in packets.enumerate() {
+                let at = [k * LANES, y];
+                match mixed.single(simd, at) {
+                    Single::Nobody => pixels.fill(CLEAR),
+                    Single::One(owner) if self.scene.shader == Shader::Texture => {
+                        self.one_triangle(simd, owner, (corner, at), &mut last, taps);
+                        *found = true;
+                    }
+                    _ => mixed.places.push(at),
                 }
-                Owners::Single(Some(owner)) => Row::Same(owner),
-                Owners::Each(owners) => Row::Each(owners.row(y, 0)),
-            };
-            self.row(simd, owners, (corner, y), row, (&mut last, taps));
-        }
-    }
-
-    /// Finds the taps of all packets before it reads the texels of any: neither waits for the other.
-    #[inline(always)]
-    fn row<S: Simd>(
-        &self,
-        simd: S,
-        owners: Row<'_>,
-        (corner, y): (UVec2, usize),
-        row: &mut [u32],
-        (last, taps): (&mut Option<LastPlanes>, &mut RowTaps),
-    ) {
-        let mut found = [false; PACKETS];
-        let packets = row.chunks_mut(LANES).zip(&mut *taps).zip(&mut found);
-        for (k, ((pixels, taps), found)) in packets.enumerate() {
-            let at = [k * LANES, y];
-            let shaded = match owners {
-                Row::Same(owner) => self.one_triangle(simd, owner, corner, at, (last, taps)),
-                Row::Each(row) => {
-                    let owners = &row[k * LANES..][..LANES];
-                    self.packet(simd, owners, corner, at, (last, taps))
+            }
+            for ((pixels, taps), found) in row.chunks_mut(LANES).zip(&*taps).zip(&found) {
+                if *found {
+                    taps.write_codes(simd, self.textures[0], pixels);
                 }
-            };
-            match shaded {
-                Some(codes) => store(codes, pixels),
-                None => *found = true,
             }
         }
-        for ((pixels, taps), found) in row.chunks_mut(LANES).zip(&*taps).zip(found) {
-            if found {
-                taps.write_codes(simd, self.textures[0], pixels);
-            }
+        let taps = &mut taps[0];
+        match self.scene.shader {
+            Shader::Texture => self.mixed::<S, 1>(simd, &mixed, corner, rows, taps),
+            Shader::Lit => self.mixed::<S, 2>(simd, &mixed, corner, rows, taps),
+            Shader::NormalMapped => self.mixed::<S, 3>(simd, &mixed, corner, rows, taps),
         }
     }
 
-    /// Colours of sixteen pixels of a row; `None` where the taps of one triangle were found.
-    #[inline(always)]
-    fn packet<S: Simd>(
-        &self,
-        simd: S,
-        owners: &[u32],
-        corner: UVec2,
-        at: [usize; 2],
-        memory: (&mut Option<LastPlanes>, &mut Taps),
-    ) -> Option<u32x16<S>> {
-        let lanes = u32x16::from_slice(simd, owners);
-        let clear = u32x16::splat(simd, CLEAR);
-        let first = owners[0];
-        if lanes.simd_eq(first).all_true() {
-            return match first {
-                OwnerRows::NOBODY => Some(clear),
-                owner => self.one_triangle(simd, owner, corner, at, memory),
-            };
-        }
-        let covered = !lanes.simd_eq(OwnerRows::NOBODY);
-        // Lanes without a triangle take part in somebody's.
-        let lane = covered.to_bitmask().trailing_zeros() as usize;
-        let owners = covered.select(lanes, u32x16::splat(simd, owners[lane]));
-        let found = self.many_triangles(simd, &owners.to_array(), pixel(corner, at), memory.1);
-        Some(covered.select(found, clear))
-    }
-
-    /// Sixteen pixels of one triangle: inlined, so that its planes stay in registers along a row.
+    /// Finds the taps of sixteen pixels of one triangle: inlined, so that its planes stay in registers along a row.
     #[inline(always)]
     fn one_triangle<S: Simd>(
         &self,
         simd: S,
         owner: u32,
-        corner: UVec2,
-        at: [usize; 2],
-        (last, taps): (&mut Option<LastPlanes>, &mut Taps),
-    ) -> Option<u32x16<S>> {
-        if self.scene.shader != Shader::Texture {
-            let owners = &[owner; LANES];
-            return Some(self.many_triangles(simd, owners, pixel(corner, at), taps));
-        }
+        (corner, at): (UVec2, [usize; 2]),
+        last: &mut Option<LastPlanes>,
+        taps: &mut Taps,
+    ) {
         let planes = match last {
             Some(last) if last.owner == owner => &last.planes,
             _ => {
@@ -150,7 +113,6 @@ impl TileShader<'_> {
         let coordinates = planes.packet(simd, at[0] as f64, at[1] as f64);
         let footprint = footprint(self.textures[0], &coordinates);
         taps.find(simd, self.textures[0], self.state, &footprint);
-        None
     }
 
     /// Texture coordinates over a triangle, from the first pixel of a tile.
@@ -170,37 +132,76 @@ impl TileShader<'_> {
         CoordinatePlanes::new(&surface.edges_at(corner), surface.inv_w, st)
     }
 
-    /// Sixteen pixels, each of a triangle of its own.
+    /// Packets of pixels, each of a triangle of its own, by a shader that reads `ROWS` rows of attributes.
     ///
-    /// One function however many callers: inlined it is 20 KiB of code each, for each instruction set.
+    /// A function of its own, not inlined into each row's loop: 20 KiB of code for each instruction set.
     #[inline(never)]
-    fn many_triangles<S: Simd>(
+    fn mixed<S: Simd, const ROWS: usize>(
         &self,
         simd: S,
-        owners: &[u32; LANES],
-        first: UVec2,
+        mixed: &Mixed<'_>,
+        corner: UVec2,
+        rows: &mut [&mut [u32]],
         taps: &mut Taps,
-    ) -> u32x16<S> {
+    ) {
         simd.vectorize(
             #[inline(always)]
-            || self.mixed_triangles(simd, owners, first, taps),
-        )
+            || {
+                let Some(&first) = mixed.places.first() else {
+                    return;
+                };
+                // The one that is shaded and the one on its way, in turn.
+                let mut slots = [self.corners::<S, ROWS>(simd, mixed, first); 2];
+                for (k, &at) in mixed.places.iter().enumerate() {
+                    let [even, odd] = &mut slots;
+                    let (now, next) = if k % 2 == 0 { (even, odd) } else { (odd, even) };
+                    if let Some(&after) = mixed.places.get(k + 1) {
+                        *next = self.corners(simd, mixed, after);
+                    }
+                    let found = self.packet(simd, now, pixel(corner, at), taps);
+                    let found = now.covered.select(found, u32x16::splat(simd, CLEAR));
+                    let row = &mut rows[at[1]][at[0]..];
+                    let width = row.len().min(LANES);
+                    store(found, &mut row[..width]);
+                }
+            },
+        );
     }
 
     #[inline(always)]
-    fn mixed_triangles<S: Simd>(
+    fn corners<S: Simd, const ROWS: usize>(
         &self,
         simd: S,
-        owners: &[u32; LANES],
+        mixed: &Mixed<'_>,
+        at: [usize; 2],
+    ) -> Corners<S, ROWS> {
+        let (owners, covered) = mixed.owners(simd, at);
+        let surfaces = SurfacePacket::gather(simd, self.frame, &owners);
+        let mut rows = [[[f32x16::splat(simd, 0.0); 4]; 3]; ROWS];
+        for (row, attributes) in rows.iter_mut().enumerate() {
+            *attributes = self.row(simd, row, &surfaces);
+        }
+        Corners {
+            covered,
+            surfaces,
+            rows,
+        }
+    }
+
+    #[inline(always)]
+    fn packet<S: Simd, const ROWS: usize>(
+        &self,
+        simd: S,
+        corners: &Corners<S, ROWS>,
         first: UVec2,
         taps: &mut Taps,
     ) -> u32x16<S> {
-        let surfaces = surface_packet(simd, self.frame, owners, first);
-        let corners = self.rows(simd, 0, &surfaces);
-        let coordinates = coordinates(&surfaces, &corners);
+        let Corners { surfaces, rows, .. } = corners;
+        let weights = surfaces.weights(simd, self.frame, first);
+        let coordinates = coordinates(&weights, &rows[0]);
         let footprint = footprint(self.textures[0], &coordinates);
         taps.find(simd, self.textures[0], self.state, &footprint);
-        if self.scene.shader == Shader::Texture {
+        if ROWS == 1 {
             let mut codes = [0; LANES];
             taps.write_codes(simd, self.textures[0], &mut codes);
             return codes.simd_into(simd);
@@ -208,17 +209,17 @@ impl TileShader<'_> {
         let [r, g, b, _] = taps.sample(simd, self.textures[0]);
         let weights = three(
             #[inline(always)]
-            |k| surfaces.weights.weights[k].narrow(),
+            |k| weights.weights[k].narrow(),
         );
-        let [_, _, nx, ny] = mixed(&weights, &corners);
-        let [nz, px, py, pz] = mixed(&weights, &self.rows(simd, 1, &surfaces));
+        let [_, _, nx, ny] = mixed(&weights, &rows[0]);
+        let [nz, px, py, pz] = mixed(&weights, &rows[1]);
         let (normal, position) = ([nx, ny, nz], [px, py, pz]);
-        let to_eye = self.eye_direction(simd, &surfaces, position);
-        let (normal, highlight) = if self.scene.shader == Shader::NormalMapped {
+        let to_eye = self.eye_direction(simd, surfaces, position);
+        let (normal, highlight) = if ROWS == 3 {
             // Textures of one shape at one place.
             let [x, y, z, _] = taps.sample(simd, self.textures[1]);
             let [strength, ..] = taps.sample(simd, self.textures[2]);
-            let [tx, ty, tz, _] = mixed(&weights, &self.rows(simd, 2, &surfaces));
+            let [tx, ty, tz, _] = mixed(&weights, &rows[2]);
             let normal = mapped_normal(simd, normal, [tx, ty, tz], [x, y, z]);
             (normal, strength * MAPPED_HIGHLIGHT)
         } else {
@@ -235,25 +236,40 @@ impl TileShader<'_> {
         surfaces: &SurfacePacket<S>,
         position: Vectors<S>,
     ) -> Vectors<S> {
-        let mut places = [[0.0f32; LANES]; 3];
-        for (lane, vertices) in surfaces.vertices.iter().enumerate() {
-            let place = self.scene.instances[(vertices[0] >> self.vertex_bits) as usize];
-            for (axis, lanes) in places.iter_mut().enumerate() {
-                lanes[lane] = place[axis];
-            }
-        }
+        let instances = u32x16::from_slice(simd, &surfaces.vertices[0]) >> self.vertex_bits;
+        let place = if instances.simd_eq(instances[0]).all_true() {
+            let place = self.scene.instances[instances[0] as usize];
+            three(
+                #[inline(always)]
+                |axis| f32x16::splat(simd, place[axis]),
+            )
+        } else {
+            self.places(simd, &instances.to_array())
+        };
+        three(
+            #[inline(always)]
+            |axis| f32x16::splat(simd, self.scene.eye[axis]) - (position[axis] + place[axis]),
+        )
+    }
+
+    /// Places of instances, lane by lane.
+    #[inline(always)]
+    fn places<S: Simd>(&self, simd: S, instances: &[u32; LANES]) -> Vectors<S> {
         three(
             #[inline(always)]
             |axis| {
-                let place = f32x16::from_slice(simd, &places[axis]);
-                f32x16::splat(simd, self.scene.eye[axis]) - (position[axis] + place)
+                f32x16::from_fn(
+                    simd,
+                    #[inline(always)]
+                    |lane| self.scene.instances[instances[lane] as usize][axis],
+                )
             },
         )
     }
 
     /// A row of attributes at the three corners of each lane, attribute by attribute.
     #[inline(always)]
-    fn rows<S: Simd>(
+    fn row<S: Simd>(
         &self,
         simd: S,
         row: usize,
@@ -263,20 +279,16 @@ impl TileShader<'_> {
         three(
             #[inline(always)]
             |corner| {
-                let mut lanes = [0.0f32; 4 * LANES];
-                for (lane, out) in lanes.as_chunks_mut::<4>().0.iter_mut().enumerate() {
-                    *out = rows[self.vertex(surfaces.vertices[lane][corner])];
-                }
-                let quarters = four(
+                let attributes = columns(
                     #[inline(always)]
-                    |q| f32x4::load_four_interleaved(simd, &lanes[16 * q..16 * (q + 1)]),
+                    |lane| {
+                        let vertex = self.vertex(surfaces.vertices[corner][lane]);
+                        f32x4::from_slice(simd, &rows[vertex]).bitcast()
+                    },
                 );
                 four(
                     #[inline(always)]
-                    |k| {
-                        let low = quarters[0][k].combine(quarters[1][k]);
-                        low.combine(quarters[2][k].combine(quarters[3][k]))
-                    },
+                    |k| attributes[k].bitcast(),
                 )
             },
         )
@@ -289,21 +301,14 @@ impl TileShader<'_> {
     }
 }
 
-/// Writes as many as there are pixels.
+/// Writes as many of 16 pixels as there is room for.
 #[inline(always)]
-fn store<S: Simd>(codes: u32x16<S>, pixels: &mut [u32]) {
+fn store<S: Simd>(found: u32x16<S>, pixels: &mut [u32]) {
     if pixels.len() == LANES {
-        codes.store_slice(pixels);
+        found.store_slice(pixels);
     } else {
-        pixels.copy_from_slice(&codes.as_slice()[..pixels.len()]);
+        pixels.copy_from_slice(&found.as_slice()[..pixels.len()]);
     }
-}
-
-/// Owners of a row.
-#[derive(Clone, Copy)]
-enum Row<'a> {
-    Same(u32),
-    Each(&'a [u32]),
 }
 
 /// A pixel of the target from its place in a tile.
@@ -325,10 +330,9 @@ fn mixed<S: Simd>(weights: &[f32x16<S>; 3], corners: &[[f32x16<S>; 4]; 3]) -> [f
 /// Texture coordinates and derivatives from the first two attributes: in f64, measured from corner 0.
 #[inline(always)]
 fn coordinates<S: Simd>(
-    surfaces: &SurfacePacket<S>,
+    weights: &PacketWeights<S>,
     corners: &[[f32x16<S>; 4]; 3],
 ) -> PacketCoordinates<S> {
-    let weights = &surfaces.weights;
     let toward = two(
         #[inline(always)]
         |axis| {
