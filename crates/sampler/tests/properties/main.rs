@@ -24,3 +24,4 @@ mod tile;
 mod transfer;
 mod verifier;
 mod volume;
+mod weighted;
