@@ -65,18 +65,18 @@ pub trait Sums<S: Simd>: Copy {
 
 /// Sums of 8-bit texels, in integers.
 #[derive(Debug, Clone, Copy)]
-pub struct Sums8<S: Simd>([i32x16<S>; 4]);
+pub struct Sums8<S: Simd>(pub(super) [i32x16<S>; 4]);
 
 /// Sums of 16-bit texels, in f32.
 #[derive(Debug, Clone, Copy)]
-pub struct Sums16<S: Simd>([f32x16<S>; 4]);
+pub struct Sums16<S: Simd>(pub(super) [f32x16<S>; 4]);
 
 /// Sums of f32 texels, in f32.
 #[derive(Debug, Clone, Copy)]
-pub struct SumsFloat<S: Simd>([f32x16<S>; 4]);
+pub struct SumsFloat<S: Simd>(pub(super) [f32x16<S>; 4]);
 
 /// In each block [r g b a] of one texel and [r g b a] of its right neighbour, twice, to [r r g g b b a a].
-const BESIDE: [u8; 16] = [0, 4, 1, 5, 2, 6, 3, 7, 8, 12, 9, 13, 10, 14, 11, 15];
+pub(super) const BESIDE: [u8; 16] = [0, 4, 1, 5, 2, 6, 3, 7, 8, 12, 9, 13, 10, 14, 11, 15];
 
 impl<S: Simd> Sums<S> for Sums8<S> {
     type Texel = u32;

@@ -15,6 +15,7 @@ mod fixed;
 mod non_finite;
 mod oracle;
 mod packet;
+mod packet_blocks;
 mod pick;
 mod solid_noise;
 mod solid_regular;
