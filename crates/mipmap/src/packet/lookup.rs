@@ -128,7 +128,7 @@ fn nearest_lanes<S: Simd>(
     }
 }
 
-struct Lookup<'a, S: Simd, T> {
+pub(super) struct Lookup<'a, S: Simd, T> {
     simd: S,
     texture: &'a PackedPyramid,
     texels: &'a [T],
@@ -136,17 +136,29 @@ struct Lookup<'a, S: Simd, T> {
     bordered: bool,
 }
 
-impl<S: Simd, T> Lookup<'_, S, T> {
+impl<'a, S: Simd, T> Lookup<'a, S, T> {
+    /// Of 2×2 texels in every lane.
+    #[inline(always)]
+    pub(super) fn bilinear(simd: S, texture: &'a PackedPyramid, texels: &'a [T]) -> Self {
+        Self {
+            simd,
+            texture,
+            texels,
+            nearest: None,
+            bordered: texture.modes().contains(&AddressMode::ClampToBorder),
+        }
+    }
+
     /// Where each lane stands in the texture; coordinates as [`fold`] takes them.
     #[inline(always)]
-    fn place(&self, s: f32x16<S>, t: f32x16<S>) -> [f32x16<S>; 2] {
+    pub(super) fn place(&self, s: f32x16<S>, t: f32x16<S>) -> [f32x16<S>; 2] {
         let [s_mode, t_mode] = self.texture.modes();
         [fold(self.simd, s_mode, s), fold(self.simd, t_mode, t)]
     }
 
     /// Adds one level's texels at each lane's place.
     #[inline(always)]
-    fn level<A: Sums<S, Texel = T>>(
+    pub(super) fn level<A: Sums<S, Texel = T>>(
         &self,
         sums: &mut A,
         placed: &Placed<S>,

@@ -30,6 +30,9 @@
 //! where coordinates are small; what a coordinate of f32 resolves, 2⁻²⁴ of a texture, comes on top. The bits are the
 //! same on every instruction set. `tests/properties/packet.rs`.
 
+mod blocks;
+mod ewa;
+mod gaussian;
 mod layout;
 mod lookup;
 mod plan;
@@ -38,6 +41,7 @@ use fearless_simd::{Simd, f32x16, u32x16};
 use sampler::Filter;
 use sampler::packet::{SheetTexels, Sums8, Sums16, SumsFloat, channels, codes};
 
+pub use ewa::ewa;
 pub use layout::PackedPyramid;
 use lookup::{Codes, Colours};
 

@@ -38,13 +38,13 @@ pub(super) struct Line<S: Simd> {
 const FARTHEST_STEP: f32 = 1_048_576.0;
 
 /// The footprint's ellipse in texels.
-struct Ellipse<S: Simd> {
+pub(super) struct Ellipse<S: Simd> {
     /// Square of the longer axis.
-    major_squared: f32x16<S>,
+    pub(super) major_squared: f32x16<S>,
     /// Longer over shorter axis, 1 and more.
-    aspect: f32x16<S>,
+    pub(super) aspect: f32x16<S>,
     /// A vector along the longer axis, of any length.
-    along: [f32x16<S>; 2],
+    pub(super) along: [f32x16<S>; 2],
 }
 
 impl<S: Simd> Plan<S> {
@@ -110,7 +110,12 @@ impl<S: Simd> Plan<S> {
 
 impl<S: Simd> Ellipse<S> {
     #[inline(always)]
-    fn of(simd: S, texture: &PackedPyramid, rule: LodRule, footprint: &PacketFootprint<S>) -> Self {
+    pub(super) fn of(
+        simd: S,
+        texture: &PackedPyramid,
+        rule: LodRule,
+        footprint: &PacketFootprint<S>,
+    ) -> Self {
         let [w, h] = [texture.size().x as f32, texture.size().y as f32];
         let (ax, ay) = (footprint.ds_dx * w, footprint.dt_dx * h);
         let (bx, by) = (footprint.ds_dy * w, footprint.dt_dy * h);

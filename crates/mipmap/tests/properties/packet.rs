@@ -10,12 +10,12 @@ use sampler::{AddressMode, Filter, Precision, Texels, Transfer};
 use crate::strategies::{byte_texture, float_texture, footprint, made, state, tame_footprint};
 
 /// Sixteen lookups, lane by lane.
-type Colours = [[f32; 16]; 4];
+pub(crate) type Colours = [[f32; 16]; 4];
 /// What a lane asks for: s, t, and their derivatives by x and by y.
-type Lanes = [[f32; 16]; 6];
+pub(crate) type Lanes = [[f32; 16]; 6];
 
 /// All instruction sets of this machine, the best first.
-fn levels() -> Vec<Level> {
+pub(crate) fn levels() -> Vec<Level> {
     let best = Level::new();
     #[allow(unused_mut, reason = "one architecture has several")]
     let mut levels = vec![best, Level::baseline()];
@@ -29,7 +29,7 @@ fn levels() -> Vec<Level> {
 }
 
 #[inline(always)]
-fn packet_of<S: Simd>(simd: S, lanes: &Lanes) -> PacketFootprint<S> {
+pub(crate) fn packet_of<S: Simd>(simd: S, lanes: &Lanes) -> PacketFootprint<S> {
     let [s, t, ds_dx, dt_dx, ds_dy, dt_dy] = lanes.map(|lane| f32x16::simd_from(simd, lane));
     PacketFootprint {
         s,
@@ -53,7 +53,7 @@ fn codes(level: Level, packed: &PackedPyramid, state: &SamplerState, lanes: &Lan
     })
 }
 
-fn lanes_of(footprints: &[Footprint]) -> Lanes {
+pub(crate) fn lanes_of(footprints: &[Footprint]) -> Lanes {
     let lane = |value: fn(&Footprint) -> f32| std::array::from_fn(|i| value(&footprints[i]));
     [
         lane(|f| f.st.x as f32),
@@ -97,7 +97,7 @@ fn continuous() -> impl Strategy<Value = SamplerState> {
     })
 }
 
-fn many(one: impl Strategy<Value = Footprint>) -> impl Strategy<Value = Vec<Footprint>> {
+pub(crate) fn many(one: impl Strategy<Value = Footprint>) -> impl Strategy<Value = Vec<Footprint>> {
     proptest::collection::vec(one, 16)
 }
 

@@ -1,0 +1,93 @@
+//! Blocks of 2×2 texels of each lane's level, wherever they lie.
+
+use fearless_simd::prelude::*;
+use fearless_simd::{Simd, f32x16, i32x16, u32x16};
+use sampler::packet::{BlockSums, BlockWeights, Pair, Span};
+
+use super::PackedPyramid;
+use super::layout::Placed;
+
+/// The texels of one level a lane.
+#[derive(Clone, Copy)]
+pub(super) struct Blocks<'a, S: Simd, T> {
+    simd: S,
+    texels: &'a [T],
+    stride: u32,
+    /// Column and row of texel (0, 0) on the sheet.
+    origin: [u32x16<S>; 2],
+    columns: Span<S>,
+    rows: Span<S>,
+}
+
+/// Two rows of texels.
+#[derive(Clone, Copy)]
+pub(super) struct BlockRows<S: Simd> {
+    pair: Pair<S>,
+    /// Where the first of them begins on the sheet.
+    start: u32x16<S>,
+}
+
+/// Width and height of each lane's level in texels.
+#[inline(always)]
+pub(super) fn texels_of<S: Simd>(texture: &PackedPyramid, placed: &Placed<S>) -> [f32x16<S>; 2] {
+    let texel = 1.0 / (1u32 << texture.fraction_bits()) as f32;
+    [placed.width * texel, placed.height * texel]
+}
+
+impl<'a, S: Simd, T> Blocks<'a, S, T> {
+    /// `spans`: of columns and of rows.
+    #[inline(always)]
+    pub(super) fn new(
+        simd: S,
+        texture: &PackedPyramid,
+        texels: &'a [T],
+        placed: &Placed<S>,
+        [columns, rows]: [Span<S>; 2],
+    ) -> Self {
+        Self {
+            simd,
+            texels,
+            stride: texture.sheet().stride(),
+            origin: [placed.column, placed.row],
+            columns,
+            rows,
+        }
+    }
+
+    /// The rows `index` and `index` + 1, before addressing.
+    #[inline(always)]
+    pub(super) fn rows(&self, index: f32x16<S>) -> BlockRows<S> {
+        let pair = self.rows.pair(self.simd, index);
+        let [column, row] = self.origin;
+        let start = (row + whole(pair.first)) * self.stride + column;
+        BlockRows { pair, start }
+    }
+
+    /// Adds the texels of two rows in the columns `index` and `index` + 1, before addressing.
+    #[inline(always)]
+    pub(super) fn add<A: BlockSums<S, Texel = T>>(
+        &self,
+        sums: &mut A,
+        rows: &BlockRows<S>,
+        index: f32x16<S>,
+        weights: &BlockWeights<S>,
+    ) {
+        let simd = self.simd;
+        let pair = self.columns.pair(simd, index);
+        let (upper, lower) = (pair.lay(simd, weights.upper), pair.lay(simd, weights.lower));
+        let left = rows.pair.lay(simd, [upper[0], lower[0]]);
+        let right = rows.pair.lay(simd, [upper[1], lower[1]]);
+        let weights = BlockWeights {
+            upper: [left[0], right[0]],
+            lower: [left[1], right[1]],
+        };
+        let offsets = rows.start + whole(pair.first);
+        sums.add_block(simd, self.texels, self.stride as usize, offsets, &weights);
+    }
+}
+
+/// Whole numbers of −1 and more, as they are added to offsets.
+#[inline(always)]
+fn whole<S: Simd>(index: f32x16<S>) -> u32x16<S> {
+    i32x16::truncate_from(index).bitcast()
+}
