@@ -8,7 +8,6 @@ use super::PackedPyramid;
 use super::layout::Placed;
 
 /// The texels of one level a lane.
-#[derive(Clone, Copy)]
 pub(super) struct Blocks<'a, S: Simd, T> {
     simd: S,
     texels: &'a [T],
@@ -20,7 +19,6 @@ pub(super) struct Blocks<'a, S: Simd, T> {
 }
 
 /// Two rows of texels.
-#[derive(Clone, Copy)]
 pub(super) struct BlockRows<S: Simd> {
     pair: Pair<S>,
     /// Where the first of them begins on the sheet.

@@ -2,9 +2,10 @@
 
 use fearless_simd::prelude::*;
 use fearless_simd::{Simd, f32x16, i32x16, mask32x16, u32x16};
-use sampler::packet::{ONE, Share, Sums, codes, fold, held, unit};
+use sampler::packet::{BlockSums, ONE, Share, Sums, codes, fold, held, unit};
 use sampler::{AddressMode, Filter};
 
+use super::bicubic::Kernels;
 use super::layout::Placed;
 use super::plan::Plan;
 use super::{PackedPyramid, PacketFootprint};
@@ -49,16 +50,23 @@ impl<S: Simd> Finish<S> for Codes {
     }
 }
 
-/// The filtered colours.
+/// The filtered colours. `most`: as [`Plan::of`] takes it.
 #[inline(always)]
-pub(super) fn filtered<S: Simd, A: Sums<S>, F: Finish<S>>(
+pub(super) fn filtered<S: Simd, A: BlockSums<S>, F: Finish<S>>(
     simd: S,
     texture: &PackedPyramid,
     texels: &[A::Texel],
     state: &SamplerState,
+    most: f32x16<S>,
     footprint: &PacketFootprint<S>,
 ) -> F::Output {
-    let plan = Plan::of(simd, texture, state, footprint);
+    let plan = Plan::of(simd, texture, state, most, footprint);
+    if let Some(kernels) = Kernels::of(simd, state, plan.minified) {
+        return simd.vectorize(
+            #[inline(always)]
+            || kernels.filtered::<A, F>(simd, texture, texels, &plan, footprint),
+        );
+    }
     let lookup = Lookup {
         simd,
         texture,
@@ -87,17 +95,11 @@ pub(super) fn filtered<S: Simd, A: Sums<S>, F: Finish<S>>(
         }
         return F::finish(simd, sums, None);
     };
-    // Probes stand on either side of the middle: pair 0 before and after it, pair 1, and so on.
-    let end = u32x16::truncate_from(line.end * ONE as f32 + 0.5);
-    let end_coarse = u32x16::truncate_from(line.end * plan.fraction * ONE as f32 + 0.5);
-    let none = u32x16::splat(simd, 0);
-    let mut all_weights = none;
+    let mut all_weights = u32x16::splat(simd, 0);
     for k in 0..line.pairs {
-        let k = f32x16::splat(simd, k as f32);
-        let (inner, outer) = (k.simd_lt(line.whole), k.simd_gt(line.whole));
-        let cells = inner.select(k + 0.5, line.end_at);
-        let all = inner.select(one_units, outer.select(none, end));
-        let coarse = inner.select(coarse, outer.select(none, end_coarse));
+        let (cells, weight) = line.pair(simd, k);
+        let all = u32x16::truncate_from(weight * ONE as f32 + 0.5);
+        let coarse = u32x16::truncate_from(weight * plan.fraction * ONE as f32 + 0.5);
         all_weights += all + all;
         let (ds, dt) = (line.step_s * cells, line.step_t * cells);
         for (s, t) in [(s - ds, t - dt), (s + ds, t + dt)] {
@@ -193,15 +195,22 @@ impl<'a, S: Simd, T> Lookup<'a, S, T> {
             units = units.max(f32x16::splat(self.simd, 0.0));
         }
         let mut units = i32x16::truncate_from(units);
+        let last = i32x16::truncate_from(size) + ((1 << bits) - 1);
+        let none = u32x16::splat(self.simd, 0);
+        let mut beyond = none;
         if self.bordered || self.nearest.is_some() {
             // At the far end, and beyond a border, the last texel's right edge.
-            units = units.min(i32x16::truncate_from(size) + ((1 << bits) - 1));
+            if self.bordered {
+                let whole = u32x16::splat(self.simd, ONE);
+                beyond = units.simd_gt(last).select(whole, none);
+            }
+            units = units.min(last);
         }
         let fraction = units & ((1 << bits) - 1);
         let first: u32x16<S> = ((units >> bits) - 1).bitcast();
         let second: u32x16<S> = (fraction << (ONE.ilog2() - bits)).bitcast();
         match self.nearest {
-            Some(nearest) => (first, nearest.select(u32x16::splat(self.simd, 0), second)),
+            Some(nearest) => (first, nearest.select(beyond, second)),
             None => (first, second),
         }
     }
@@ -223,7 +232,8 @@ pub(super) fn picked<S: Simd>(
     if !one {
         return None;
     }
-    let plan = Plan::of(simd, texture, state, footprint);
+    let most = f32x16::splat(simd, 1.0);
+    let plan = Plan::of(simd, texture, state, most, footprint);
     let placed = texture.placed(simd, plan.fine);
     let [s_mode, t_mode] = texture.modes();
     let (s, t) = (

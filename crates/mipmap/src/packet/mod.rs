@@ -2,7 +2,7 @@
 //!
 //! [`PackedPyramid`] is a pyramid laid out for them: all levels on one sheet, each in a ring of what its address
 //! modes find beyond the border. [`sample`] is the packet twin of [`crate::sample`], [`sample_codes`] the same rounded
-//! to 8-bit RGBA.
+//! to 8-bit RGBA; [`ewa`] and [`automatic`] are those of [`crate::ewa`] and [`crate::automatic`].
 //!
 //! ```
 //! use fearless_simd::{Level, dispatch, f32x16, prelude::*};
@@ -30,20 +30,25 @@
 //! where coordinates are small; what a coordinate of f32 resolves, 2⁻²⁴ of a texture, comes on top. The bits are the
 //! same on every instruction set. `tests/properties/packet.rs`.
 
+mod automatic;
+mod bicubic;
 mod blocks;
 mod ewa;
 mod gaussian;
 mod layout;
+mod line;
 mod lookup;
 mod plan;
 
-use fearless_simd::{Simd, f32x16, u32x16};
+use fearless_simd::{Simd, SimdBase, f32x16, u32x16};
 use sampler::Filter;
 use sampler::packet::{SheetTexels, Sums8, Sums16, SumsFloat, channels, codes};
 
+pub use automatic::automatic;
 pub use ewa::ewa;
 pub use layout::PackedPyramid;
 use lookup::{Codes, Colours};
+use plan::greatest_anisotropy;
 
 use crate::probes::ProbeWeights;
 use crate::sample::SamplerState;
@@ -76,9 +81,8 @@ pub fn reads(state: &SamplerState) -> bool {
         && (one_probe || state.probe_weights == ProbeWeights::Equal)
 }
 
-/// The colours under sixteen footprints, a packet a channel: as [`crate::sample`], for what [`reads`] accepts.
-///
-/// Other filters are read as the nearest that it accepts: bicubic as bilinear, Gaussian probes as equal ones.
+/// The colours under sixteen footprints, a packet a channel: as [`crate::sample`], exactly enough whatever the state's
+/// precision.
 ///
 /// # Accuracy
 /// See the [module](self).
@@ -89,7 +93,8 @@ pub fn sample<S: Simd>(
     state: &SamplerState,
     footprint: &PacketFootprint<S>,
 ) -> [f32x16<S>; 4] {
-    channels(filtered(simd, texture, state, footprint))
+    let most = f32x16::splat(simd, greatest_anisotropy(state));
+    channels(filtered(simd, texture, state, most, footprint))
 }
 
 /// As [`sample`], each channel clamped to 0..=1 and rounded to the nearest 8-bit code, r in the lowest byte.
@@ -105,13 +110,18 @@ pub fn sample_codes<S: Simd>(
     {
         return codes;
     }
+    let most = f32x16::splat(simd, greatest_anisotropy(state));
     if let SheetTexels::Codes8(texels) = texture.sheet().texels() {
         return simd.vectorize(
             #[inline(always)]
-            || lookup::filtered::<S, Sums8<S>, Codes>(simd, texture, texels, state, footprint),
+            || {
+                lookup::filtered::<S, Sums8<S>, Codes>(
+                    simd, texture, texels, state, most, footprint,
+                )
+            },
         );
     }
-    codes(simd, filtered(simd, texture, state, footprint))
+    codes(simd, filtered(simd, texture, state, most, footprint))
 }
 
 /// One function a kind of texel, however many callers: inlined it is 10 KiB of code each.
@@ -120,22 +130,31 @@ fn filtered<S: Simd>(
     simd: S,
     texture: &PackedPyramid,
     state: &SamplerState,
+    most: f32x16<S>,
     footprint: &PacketFootprint<S>,
 ) -> [f32x16<S>; 4] {
     match texture.sheet().texels() {
         SheetTexels::Codes8(texels) => simd.vectorize(
             #[inline(always)]
-            || lookup::filtered::<S, Sums8<S>, Colours>(simd, texture, texels, state, footprint),
+            || {
+                lookup::filtered::<S, Sums8<S>, Colours>(
+                    simd, texture, texels, state, most, footprint,
+                )
+            },
         ),
         SheetTexels::Codes16(texels) => simd.vectorize(
             #[inline(always)]
-            || lookup::filtered::<S, Sums16<S>, Colours>(simd, texture, texels, state, footprint),
+            || {
+                lookup::filtered::<S, Sums16<S>, Colours>(
+                    simd, texture, texels, state, most, footprint,
+                )
+            },
         ),
         SheetTexels::Floats(texels) => simd.vectorize(
             #[inline(always)]
             || {
                 lookup::filtered::<S, SumsFloat<S>, Colours>(
-                    simd, texture, texels, state, footprint,
+                    simd, texture, texels, state, most, footprint,
                 )
             },
         ),

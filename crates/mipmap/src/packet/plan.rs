@@ -4,9 +4,16 @@ use fearless_simd::prelude::*;
 use fearless_simd::{Simd, f32x16, mask32x16};
 use sampler::Filter;
 
+use super::line::Line;
 use super::{PackedPyramid, PacketFootprint};
 use crate::lod::{LodRule, packet_log2};
 use crate::sample::{CUT_SHARPENING, MAX_ANISOTROPY, MipFilter, SamplerState};
+
+/// The greatest aspect that a state lets probes follow.
+#[inline(always)]
+pub(super) fn greatest_anisotropy(state: &SamplerState) -> f32 {
+    f32::min(state.max_anisotropy.max(1.0), MAX_ANISOTROPY)
+}
 
 /// What each lane reads.
 #[derive(Clone, Copy)]
@@ -20,23 +27,6 @@ pub(super) struct Plan<S: Simd> {
     pub(super) line: Option<Line<S>>,
 }
 
-/// A line of probes about each lane's middle.
-#[derive(Clone, Copy)]
-pub(super) struct Line<S: Simd> {
-    /// From one probe to the next, in textures.
-    pub(super) step_s: f32x16<S>,
-    pub(super) step_t: f32x16<S>,
-    /// Whole cells on each side; where the end's probe stands and what it counts for.
-    pub(super) whole: f32x16<S>,
-    pub(super) end_at: f32x16<S>,
-    pub(super) end: f32x16<S>,
-    /// Pairs of probes of the lane that has most.
-    pub(super) pairs: u32,
-}
-
-/// The greatest distance of probes, in textures.
-const FARTHEST_STEP: f32 = 1_048_576.0;
-
 /// The footprint's ellipse in texels.
 pub(super) struct Ellipse<S: Simd> {
     /// Square of the longer axis.
@@ -48,16 +38,18 @@ pub(super) struct Ellipse<S: Simd> {
 }
 
 impl<S: Simd> Plan<S> {
+    /// `most`: the greatest aspect that each lane follows, 1 and more, but never more than the state does.
     #[inline(always)]
     pub(super) fn of(
         simd: S,
         texture: &PackedPyramid,
         state: &SamplerState,
+        most: f32x16<S>,
         footprint: &PacketFootprint<S>,
     ) -> Self {
         let zero = f32x16::splat(simd, 0.0);
         let one = f32x16::splat(simd, 1.0);
-        let max_anisotropy = f32::min(state.max_anisotropy.max(1.0), MAX_ANISOTROPY);
+        let max_anisotropy = greatest_anisotropy(state);
         let one_level = texture.levels() == 1 || state.mip == MipFilter::None;
         if one_level && state.magnify == state.minify && max_anisotropy == 1.0 {
             return Self {
@@ -74,14 +66,15 @@ impl<S: Simd> Plan<S> {
         let eta = if max_anisotropy == 1.0 {
             one
         } else {
-            let eta = followed(simd, &ellipse, max_anisotropy, state.magnify);
+            let eta = followed(simd, &ellipse, most, state.magnify);
             bounded.select(eta, one)
         };
-        let half = f32x16::splat(simd, 0.5);
-        let mut lambda = packet_log2(simd, ellipse.major_squared) * half;
-        if max_anisotropy > 1.0 {
-            lambda -= packet_log2(simd, eta);
-        }
+        // Where η is all of the longer axis, λ is 0 exactly, and neither side of it.
+        let mut lambda = if max_anisotropy > 1.0 {
+            packet_log2(simd, ellipse.major_squared.sqrt() / eta)
+        } else {
+            packet_log2(simd, ellipse.major_squared) * 0.5
+        };
         if state.lod_rule == LodRule::Exact {
             let cut = if max_anisotropy == 1.0 {
                 ellipse.aspect
@@ -95,7 +88,7 @@ impl<S: Simd> Plan<S> {
         let lambda = limited(simd, state, lambda);
         let (fine, fraction) = levels(simd, texture, state.mip, lambda);
         let line = if max_anisotropy > 1.0 && eta.simd_gt(one).any_true() {
-            Some(Line::of(simd, texture, &ellipse, eta))
+            Some(Line::of(simd, texture, &ellipse, eta, state.probe_weights))
         } else {
             None
         };
@@ -163,7 +156,7 @@ fn known_or_infinite<S: Simd>(simd: S, a: f32x16<S>, b: f32x16<S>) -> f32x16<S> 
 fn followed<S: Simd>(
     simd: S,
     ellipse: &Ellipse<S>,
-    max_anisotropy: f32,
+    max_anisotropy: f32x16<S>,
     magnify: Filter,
 ) -> f32x16<S> {
     let one = f32x16::splat(simd, 1.0);
@@ -175,9 +168,7 @@ fn followed<S: Simd>(
     let aspect = ellipse.aspect;
     let nearly_round = aspect.simd_lt(f32x16::splat(simd, 1.6));
     let needed = nearly_round.select((aspect * 1.5 - 0.8).max(one), aspect);
-    needed
-        .min(f32x16::splat(simd, max_anisotropy))
-        .min(most.max(one))
+    needed.min(max_anisotropy).min(most.max(one))
 }
 
 /// λ with bias and limits; NaN never passes.
@@ -222,46 +213,4 @@ fn levels<S: Simd>(
             (fine, lod - fine)
         }
     }
-}
-
-impl<S: Simd> Line<S> {
-    #[inline(always)]
-    fn of(simd: S, texture: &PackedPyramid, ellipse: &Ellipse<S>, eta: f32x16<S>) -> Self {
-        let zero = f32x16::splat(simd, 0.0);
-        let one = f32x16::splat(simd, 1.0);
-        let two = f32x16::splat(simd, 2.0);
-        // The longer axis over η, from texels to textures.
-        let [x, y] = ellipse.along;
-        let squared = x * x + y * y;
-        let some = squared.simd_gt(zero) & squared.simd_le(f32x16::splat(simd, f32::MAX));
-        let length = (ellipse.major_squared / some.select(squared, one)).sqrt() / eta;
-        let [w, h] = [texture.size().x as f32, texture.size().y as f32];
-        let (step_s, step_t) = (x * length * (1.0 / w), y * length * (1.0 / h));
-        // Beyond so many textures the coarsest level answers, wherever a probe stands.
-        let farthest = f32x16::splat(simd, FARTHEST_STEP);
-        let some = some & step_s.abs().simd_le(farthest) & step_t.abs().simd_le(farthest);
-        let (step_s, step_t) = (some.select(step_s, zero), some.select(step_t, zero));
-        let half = eta * 0.5;
-        let whole = half.floor();
-        let rest = half - whole;
-        let parting = eta.simd_le(two);
-        let pairs = (parting.select(one, half.ceil())).reduce_max();
-        Self {
-            step_s,
-            step_t,
-            whole: parting.select(zero, whole),
-            end_at: parting.select((eta - one) * 0.5, whole + rest * 0.5),
-            end: parting.select(one, rest),
-            pairs: whole_number(pairs),
-        }
-    }
-}
-
-#[allow(
-    clippy::cast_possible_truncation,
-    clippy::cast_sign_loss,
-    reason = "a whole number from 1 to MAX_ANISOTROPY"
-)]
-fn whole_number(x: f32) -> u32 {
-    x as u32
 }
