@@ -41,7 +41,6 @@ mod lookup;
 mod plan;
 
 use fearless_simd::{Simd, SimdBase, f32x16, u32x16};
-use sampler::Filter;
 use sampler::packet::{SheetTexels, Sums8, Sums16, SumsFloat, channels, codes};
 
 pub use automatic::automatic;
@@ -50,7 +49,6 @@ pub use layout::PackedPyramid;
 use lookup::{Codes, Colours};
 use plan::greatest_anisotropy;
 
-use crate::probes::ProbeWeights;
 use crate::sample::SamplerState;
 
 /// Where sixteen pixels look in a texture, and how far their neighbours look.
@@ -68,17 +66,6 @@ pub struct PacketFootprint<S: Simd> {
     pub ds_dy: f32x16<S>,
     /// Change of t to the next pixel in y.
     pub dt_dy: f32x16<S>,
-}
-
-/// Whether packets read a texture by `state`: all but bicubic filters and Gaussian probes, which stay with
-/// [`crate::sample`].
-#[must_use]
-pub fn reads(state: &SamplerState) -> bool {
-    let linear = |filter| matches!(filter, Filter::Nearest | Filter::Bilinear);
-    let one_probe = state.max_anisotropy.max(1.0) == 1.0;
-    linear(state.magnify)
-        && linear(state.minify)
-        && (one_probe || state.probe_weights == ProbeWeights::Equal)
 }
 
 /// The colours under sixteen footprints, a packet a channel: as [`crate::sample`], exactly enough whatever the state's
