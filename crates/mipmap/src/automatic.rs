@@ -36,6 +36,33 @@ impl Tolerance {
     pub fn rmse(self) -> f32 {
         self.0
     }
+
+    /// The major axis, in texels, up to which one bilinear lookup is enough.
+    pub(crate) fn one_lookup_until(self) -> f32 {
+        self.0.min(MAGNIFIED) / MAGNIFIED
+    }
+
+    /// Parts of the pixel along each of its axes, where probes do not reach the tolerance.
+    pub(crate) fn parts(self) -> Option<u16> {
+        if self.0 >= CURVE[0].1 {
+            return None;
+        }
+        let parts = PARTS.into_iter().find(|&(_, error)| error <= self.0);
+        Some(parts.unwrap_or(PARTS[PARTS.len() - 1]).0)
+    }
+
+    /// The r at which [`CURVE`] reaches the tolerance; ∞ beyond its end.
+    pub(crate) fn slack(self) -> f32 {
+        let mut below = CURVE[0];
+        for point in CURVE {
+            if self.0 < point.1 {
+                let fraction = ((self.0 - below.1) / (point.1 - below.1)).max(0.0);
+                return below.0 + (point.0 - below.0) * fraction;
+            }
+            below = point;
+        }
+        f32::INFINITY
+    }
 }
 
 /// RMSE of a footprint r times as long as what is followed of it.
@@ -80,13 +107,12 @@ impl Reading {
     /// `major`, `minor`: the footprint's axes in texels. A point, and a footprint that is not finite, are read by one
     /// lookup.
     pub fn choose(tolerance: Tolerance, major: f32, minor: f32) -> Self {
-        let rmse = tolerance.0;
-        if major * MAGNIFIED <= rmse.min(MAGNIFIED) {
+        if major <= tolerance.one_lookup_until() {
             return Self::Bilinear;
         }
-        if rmse < CURVE[0].1 && major.is_finite() {
-            let parts = PARTS.into_iter().find(|&(_, error)| error <= rmse);
-            let (along_axis, _) = parts.unwrap_or(PARTS[PARTS.len() - 1]);
+        if let Some(along_axis) = tolerance.parts()
+            && major.is_finite()
+        {
             return Self::Parts { along_axis };
         }
         let aspect = if major.is_finite() {
@@ -95,22 +121,9 @@ impl Reading {
             1.0
         };
         Self::Probes {
-            max_anisotropy: (aspect / slack(rmse)).clamp(1.0, MAX_ANISOTROPY),
+            max_anisotropy: (aspect / tolerance.slack()).clamp(1.0, MAX_ANISOTROPY),
         }
     }
-}
-
-/// The r at which [`CURVE`] reaches `rmse`; ∞ beyond its end.
-fn slack(rmse: f32) -> f32 {
-    let mut below = CURVE[0];
-    for point in CURVE {
-        if rmse < point.1 {
-            let fraction = ((rmse - below.1) / (point.1 - below.1)).max(0.0);
-            return below.0 + (point.0 - below.0) * fraction;
-        }
-        below = point;
-    }
-    f32::INFINITY
 }
 
 /// The colour under `footprint`, by the cheapest reading whose stated error is within `tolerance`.

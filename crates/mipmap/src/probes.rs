@@ -40,12 +40,12 @@ pub enum ProbeWeights {
 }
 
 /// Where the Gaussian is cut, in standard deviations.
-const CUT: f64 = 2.5;
+pub(crate) const CUT: f64 = 2.5;
 /// exp(−CUT²/2).
-const EDGE: f64 = 0.043_936_933_623_407_42;
+pub(crate) const EDGE: f64 = 0.043_936_933_623_407_42;
 /// Variance of exp(−x²/2) − exp(−CUT²/2) on |x| < CUT: with G = √(2π)·erf(CUT/√2), (G − 2·CUT·EDGE − ⅔·CUT³·EDGE)
 /// over (G − 2·CUT·EDGE).
-const CUT_VARIANCE: f64 = 0.797_112_438_046_719_6;
+pub(crate) const CUT_VARIANCE: f64 = 0.797_112_438_046_719_6;
 
 /// The probes of one footprint.
 #[derive(Debug, Clone, Copy)]

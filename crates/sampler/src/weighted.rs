@@ -100,9 +100,15 @@ impl Span<'_> {
             }
         }
         let mut sum = expand(CHANNELS, |channel| sums[channel]);
+        let total = || self.weights.iter().sum::<f32>();
+        if CHANNELS <= 2 && [self.origin.y, self.origin.z] != [self.origin.x; 2] {
+            // The border as the origin of grey texels need not be grey itself.
+            sum.y += (self.origin.x - self.origin.y) * total();
+            sum.z += (self.origin.x - self.origin.z) * total();
+        }
         if CHANNELS % 2 == 1 {
             // Alpha is 1 in every texel.
-            sum.w = (1.0 - self.origin.w) * self.weights.iter().sum::<f32>();
+            sum.w = (1.0 - self.origin.w) * total();
         }
         sum.as_dvec4()
     }

@@ -35,7 +35,7 @@ use crate::pyramid::Pyramid;
 use crate::sample::{SamplerState, sample};
 
 /// Standard deviation of the pixel, in pixels.
-const SIGMA: f64 = 0.5;
+pub(crate) const SIGMA: f64 = 0.5;
 
 /// How finely [`ewa`] reads, and so its error against a Gaussian pixel and its time.
 ///
@@ -65,7 +65,7 @@ impl EwaTier {
     }
 
     /// Added to λ of the minor axis.
-    fn bias(self) -> f32 {
+    pub(crate) fn bias(self) -> f32 {
         match self {
             Self::Fast => 1.0,
             Self::Standard => 0.0,
@@ -74,7 +74,7 @@ impl EwaTier {
     }
 
     /// R, where the Gaussian is cut.
-    fn cut(self) -> f64 {
+    pub(crate) fn cut(self) -> f64 {
         match self {
             Self::Fast => 3.0,
             Self::Standard => 3.5,
@@ -82,14 +82,14 @@ impl EwaTier {
         }
     }
 
-    fn window(self) -> &'static Window {
+    pub(crate) fn window(self) -> &'static Window {
         static WINDOWS: [OnceLock<Window>; 3] = [const { OnceLock::new() }; 3];
         WINDOWS[self as usize].get_or_init(|| Window::new(self.cut()))
     }
 }
 
 /// The part of a level, before the next, over which the two are blended.
-const BAND: f32 = 0.25;
+pub(crate) const BAND: f32 = 0.25;
 
 /// The colour under `footprint`, weighted by a Gaussian pixel of σ = ½: the elliptical weighted average.
 ///

@@ -1,11 +1,13 @@
 use crate::lod::round_to_f32;
 
 /// exp(−q/2) − exp(−R²/2) for q in 0..R², tabulated.
-pub(super) struct Window {
+pub(crate) struct Window {
     /// R².
-    pub(super) reach: f64,
+    pub(crate) reach: f64,
     /// What the covariance is multiplied by, so that the cut Gaussian has the wanted one.
-    pub(super) widening: f64,
+    pub(crate) widening: f64,
+    /// exp(−R²/2).
+    pub(crate) edge: f64,
     /// Entries a unit of q.
     density: f32,
     /// The weight at an entry, and what is added until the next.
@@ -27,6 +29,7 @@ impl Window {
         Self {
             reach,
             widening: mass / second,
+            edge,
             density: round_to_f32(1.0 / step),
             table: (0..=Self::ENTRIES)
                 .map(|k| [entry(k), entry(k + 1) - entry(k)])

@@ -6,7 +6,8 @@ use sampler::packet::{ONE, Share, Tap, fold, held};
 use sampler::{AddressMode, Filter};
 
 use super::layout::Placed;
-use super::plan::{Line, Plan};
+use super::line::Line;
+use super::plan::Plan;
 use super::{PackedPyramid, PacketFootprint};
 use crate::sample::SamplerState;
 
@@ -57,6 +58,22 @@ impl<S: Simd> Course<S> {
         }
     }
 
+    /// Bilinear taps of level 0, wherever they are.
+    #[inline(always)]
+    pub(super) fn of_level_0(simd: S, texture: &PackedPyramid) -> Self {
+        let zero = f32x16::splat(simd, 0.0);
+        Self {
+            simd,
+            modes: texture.modes(),
+            stride: texture.sheet().stride(),
+            middle: [zero; 2],
+            placed: texture.placed(simd, zero),
+            levels: 1,
+            fraction: zero,
+            split: Split::of(simd, texture, &SamplerState::default(), zero.simd_lt(zero)),
+        }
+    }
+
     /// Sets [`Self::levels`] taps to those of the middle.
     #[inline(always)]
     pub(super) fn middle(&self, taps: &mut [Tap]) {
@@ -82,28 +99,24 @@ impl<S: Simd> Course<S> {
         tap.set_single(self.simd, offsets);
     }
 
-    /// Sets twice as many to those of a pair of probes: pair 0 stands before and after the middle, pair 1 beside them,
-    /// and so on.
+    /// Sets twice as many to those of a pair of probes on either side of the middle; returns what each probe counts
+    /// for.
     #[inline(always)]
-    pub(super) fn pair(&self, line: &Line<S>, pair: u32, taps: &mut [Tap]) {
-        let none = u32x16::splat(self.simd, 0);
-        let one = u32x16::splat(self.simd, ONE);
-        let k = f32x16::splat(self.simd, pair as f32);
-        let (inner, outer) = (k.simd_lt(line.whole), k.simd_gt(line.whole));
-        let cells = inner.select(k + 0.5, line.end_at);
-        let all = inner.select(one, outer.select(none, units(line.end)));
-        let end = units(line.end * self.fraction);
-        let coarse = inner.select(units(self.fraction), outer.select(none, end));
+    pub(super) fn pair(&self, line: &Line<S>, pair: u32, taps: &mut [Tap]) -> u32x16<S> {
+        let (cells, weight) = line.pair(self.simd, pair);
+        let all = units(weight);
+        let coarse = units(weight * self.fraction);
         let (ds, dt) = (line.step_s * cells, line.step_t * cells);
         let [s, t] = self.middle;
         let (before, after) = taps.split_at_mut(self.levels);
         self.probe([s - ds, t - dt], [all - coarse, coarse], before);
         self.probe([s + ds, t + dt], [all - coarse, coarse], after);
+        all
     }
 
     /// Sets the taps of a place on each level.
     #[inline(always)]
-    fn probe(&self, [s, t]: [f32x16<S>; 2], weights: [u32x16<S>; 2], taps: &mut [Tap]) {
+    pub(super) fn probe(&self, [s, t]: [f32x16<S>; 2], weights: [u32x16<S>; 2], taps: &mut [Tap]) {
         let s = fold(self.simd, self.modes[0], s);
         let t = fold(self.simd, self.modes[1], t);
         let levels = self.placed.iter().zip(weights);
@@ -119,12 +132,6 @@ impl<S: Simd> Course<S> {
             tap.set(offsets, &share);
         }
     }
-}
-
-/// What all pairs of a line count for, in units of 1/[`ONE`].
-#[inline(always)]
-pub(super) fn total<S: Simd>(line: &Line<S>) -> u32x16<S> {
-    (u32x16::truncate_from(line.whole) * ONE + units(line.end)) * 2
 }
 
 /// Of 0..=1, in units of 1/[`ONE`].
@@ -173,11 +180,17 @@ impl<S: Simd> Split<S> {
         }
         // At the far end, and beyond a border, the last texel's right edge.
         let far = i32x16::truncate_from(size) + ((1 << bits) - 1);
-        let units = i32x16::truncate_from(units).min(far);
+        let units = i32x16::truncate_from(units);
+        let none = u32x16::splat(simd, 0);
+        let mut beyond = none;
+        if self.bordered {
+            let whole = u32x16::splat(simd, ONE);
+            beyond = units.simd_gt(far).select(whole, none);
+        }
+        let units = units.min(far);
         let fraction = units & ((1 << bits) - 1);
         let first: u32x16<S> = (units >> bits).bitcast();
         let second: u32x16<S> = (fraction << (ONE.ilog2() - bits)).bitcast();
-        let none = u32x16::splat(simd, 0);
-        (first, self.nearest.select(none, second))
+        (first, self.nearest.select(beyond, second))
     }
 }

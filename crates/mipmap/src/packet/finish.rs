@@ -51,11 +51,17 @@ pub(super) fn summed<S: Simd, A: Sums<S>, F: Finish<S>>(
 ) -> F::Output {
     let mut sums = A::zero(simd);
     let stride = texture.sheet().stride() as usize;
-    for step in taps.steps() {
-        for tap in step {
-            sums.add(simd, texels, stride, tap);
+    if taps.are_blocks() {
+        for tap in taps.steps().flatten() {
+            sums.add_block(simd, texels, stride, tap);
         }
-        sums.carry();
+    } else {
+        for step in taps.steps() {
+            for tap in step {
+                sums.add(simd, texels, stride, tap);
+            }
+            sums.carry();
+        }
     }
     F::finish(simd, sums, taps.total(simd))
 }

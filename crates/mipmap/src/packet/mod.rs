@@ -3,7 +3,7 @@
 //! [`PackedPyramid`] is a pyramid laid out for them: all levels on one sheet, each in a ring of what its address
 //! modes find beyond the border. [`Taps`] are the texels that sixteen footprints read and their weights:
 //! [`Taps::find`] and [`Taps::sample`] are the packet twin of [`crate::sample`], [`Taps::write_codes`] the same rounded to
-//! 8-bit RGBA.
+//! 8-bit RGBA; [`ewa()`] and [`automatic()`] are those of [`crate::ewa`] and [`crate::automatic`].
 //!
 //! ```
 //! use fearless_simd::{Level, dispatch, f32x16, prelude::*};
@@ -35,20 +35,24 @@
 //! where coordinates are small; what a coordinate of f32 resolves, 2⁻²⁴ of a texture, comes on top. The bits are the
 //! same on every instruction set. `tests/properties/packet.rs`.
 
+mod automatic;
+mod bicubic;
+mod blocks;
 mod course;
+mod ewa;
 mod finish;
+mod gaussian;
 mod layout;
+mod line;
 mod plan;
 mod taps;
 
 use fearless_simd::{Simd, f32x16};
-use sampler::Filter;
 
+pub use automatic::automatic;
+pub use ewa::ewa;
 pub use layout::PackedPyramid;
 pub use taps::Taps;
-
-use crate::probes::ProbeWeights;
-use crate::sample::SamplerState;
 
 /// Where sixteen pixels look in a texture, and how far their neighbours look.
 #[derive(Debug, Clone, Copy)]
@@ -65,15 +69,4 @@ pub struct PacketFootprint<S: Simd> {
     pub ds_dy: f32x16<S>,
     /// Change of t to the next pixel in y.
     pub dt_dy: f32x16<S>,
-}
-
-/// Whether packets read a texture by `state`: all but bicubic filters and Gaussian probes, which stay with
-/// [`crate::sample`].
-#[must_use]
-pub fn reads(state: &SamplerState) -> bool {
-    let linear = |filter| matches!(filter, Filter::Nearest | Filter::Bilinear);
-    let one_probe = state.max_anisotropy.max(1.0) == 1.0;
-    linear(state.magnify)
-        && linear(state.minify)
-        && (one_probe || state.probe_weights == ProbeWeights::Equal)
 }

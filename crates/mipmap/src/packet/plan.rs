@@ -8,6 +8,12 @@ use super::{PackedPyramid, PacketFootprint};
 use crate::lod::{LodRule, packet_log2};
 use crate::sample::{CUT_SHARPENING, MAX_ANISOTROPY, MipFilter, SamplerState};
 
+/// The greatest aspect that a state lets probes follow.
+#[inline(always)]
+pub(super) fn greatest_anisotropy(state: &SamplerState) -> f32 {
+    f32::min(state.max_anisotropy.max(1.0), MAX_ANISOTROPY)
+}
+
 /// What each lane reads.
 #[derive(Clone, Copy)]
 pub(super) struct Plan<S: Simd> {
@@ -17,53 +23,38 @@ pub(super) struct Plan<S: Simd> {
     /// Whether λ > 0.
     pub(super) minified: mask32x16<S>,
     /// η: 1 for one probe.
-    eta: f32x16<S>,
-    ellipse: Ellipse<S>,
+    pub(super) eta: f32x16<S>,
+    pub(super) ellipse: Ellipse<S>,
     /// Whether a lane has more than one probe.
     pub(super) is_line: bool,
 }
 
-/// A line of probes about each lane's middle.
-#[derive(Clone, Copy)]
-pub(super) struct Line<S: Simd> {
-    /// From one probe to the next, in textures.
-    pub(super) step_s: f32x16<S>,
-    pub(super) step_t: f32x16<S>,
-    /// Whole cells on each side; where the end's probe stands and what it counts for.
-    pub(super) whole: f32x16<S>,
-    pub(super) end_at: f32x16<S>,
-    pub(super) end: f32x16<S>,
-    /// Pairs of probes of the lane that has most.
-    pub(super) pairs: u32,
-}
-
-/// The greatest distance of probes, in textures.
-const FARTHEST_STEP: f32 = 1_048_576.0;
-
 /// The footprint's ellipse in texels.
 #[derive(Clone, Copy)]
-struct Ellipse<S: Simd> {
+pub(super) struct Ellipse<S: Simd> {
     /// Lanes whose footprint is finite.
-    bounded: mask32x16<S>,
+    pub(super) bounded: mask32x16<S>,
     /// Square of the longer axis.
-    major_squared: f32x16<S>,
+    pub(super) major_squared: f32x16<S>,
     /// The axes' product; by [`LodRule::MaxLength`] the square of the shorter vector.
     determinant: f32x16<S>,
     /// A vector along the longer axis, of any length.
-    along: [f32x16<S>; 2],
+    pub(super) along: [f32x16<S>; 2],
 }
 
 impl<S: Simd> Plan<S> {
+    /// `most`: the greatest aspect that each lane follows, 1 and more, but never more than the state does.
     #[inline(always)]
     pub(super) fn of(
         simd: S,
         texture: &PackedPyramid,
         state: &SamplerState,
+        most: f32x16<S>,
         footprint: &PacketFootprint<S>,
     ) -> Self {
         let zero = f32x16::splat(simd, 0.0);
         let one = f32x16::splat(simd, 1.0);
-        let max_anisotropy = f32::min(state.max_anisotropy.max(1.0), MAX_ANISOTROPY);
+        let max_anisotropy = greatest_anisotropy(state);
         let one_level = texture.levels() == 1 || state.mip == MipFilter::None;
         if one_level && state.magnify == state.minify && max_anisotropy == 1.0 {
             return Self {
@@ -92,12 +83,13 @@ impl<S: Simd> Plan<S> {
             }
         } else {
             let aspect = ellipse.aspect(state.lod_rule);
-            eta = followed(simd, &ellipse, aspect, max_anisotropy, state.magnify);
+            let major = ellipse.major_squared.sqrt();
+            eta = followed(simd, major, aspect, most, state.magnify);
             eta = ellipse.bounded.select(eta, one);
-            let log_eta = packet_log2(simd, eta);
-            lambda -= log_eta;
+            // Where η is all of the longer axis, λ is 0 exactly, and neither side of it.
+            lambda = packet_log2(simd, major / eta);
             if state.lod_rule == LodRule::Exact {
-                lambda -= sharpened(simd, packet_log2(simd, aspect) - log_eta);
+                lambda -= sharpened(simd, packet_log2(simd, aspect / eta));
             }
         }
         let lambda = ellipse
@@ -118,7 +110,12 @@ impl<S: Simd> Plan<S> {
 
 impl<S: Simd> Ellipse<S> {
     #[inline(always)]
-    fn of(simd: S, texture: &PackedPyramid, rule: LodRule, footprint: &PacketFootprint<S>) -> Self {
+    pub(super) fn of(
+        simd: S,
+        texture: &PackedPyramid,
+        rule: LodRule,
+        footprint: &PacketFootprint<S>,
+    ) -> Self {
         let [w, h] = [texture.size().x as f32, texture.size().y as f32];
         let (ax, ay) = (footprint.ds_dx * w, footprint.dt_dx * h);
         let (bx, by) = (footprint.ds_dy * w, footprint.dt_dy * h);
@@ -154,7 +151,7 @@ impl<S: Simd> Ellipse<S> {
 
     /// The longer over the shorter axis, 1 and more.
     #[inline(always)]
-    fn aspect(&self, rule: LodRule) -> f32x16<S> {
+    pub(super) fn aspect(&self, rule: LodRule) -> f32x16<S> {
         let ratio = (self.major_squared / self.determinant).max(1.0);
         match rule {
             LodRule::Exact => ratio,
@@ -174,22 +171,19 @@ fn sharpened<S: Simd>(simd: S, log_cut: f32x16<S>) -> f32x16<S> {
 #[inline(always)]
 fn followed<S: Simd>(
     simd: S,
-    ellipse: &Ellipse<S>,
+    major: f32x16<S>,
     aspect: f32x16<S>,
-    max_anisotropy: f32,
+    max_anisotropy: f32x16<S>,
     magnify: Filter,
 ) -> f32x16<S> {
     let one = f32x16::splat(simd, 1.0);
-    let major = ellipse.major_squared.sqrt();
     let most = match magnify {
         Filter::Nearest => major,
         Filter::Bilinear | Filter::Bicubic(_) => major * 2.0,
     };
     let nearly_round = aspect.simd_lt(f32x16::splat(simd, 1.6));
     let needed = nearly_round.select((aspect * 1.5 - 0.8).max(one), aspect);
-    needed
-        .min(f32x16::splat(simd, max_anisotropy))
-        .min(most.max(one))
+    needed.min(max_anisotropy).min(most.max(one))
 }
 
 /// λ with bias and limits; NaN never passes.
@@ -237,47 +231,4 @@ fn levels<S: Simd>(
             (next.select(fine + 1.0, fine), next.select(zero, banded))
         }
     }
-}
-
-impl<S: Simd> Line<S> {
-    #[inline(always)]
-    pub(super) fn of(simd: S, texture: &PackedPyramid, plan: &Plan<S>) -> Self {
-        let (ellipse, eta) = (&plan.ellipse, plan.eta);
-        let zero = f32x16::splat(simd, 0.0);
-        let one = f32x16::splat(simd, 1.0);
-        let two = f32x16::splat(simd, 2.0);
-        // The longer axis over η, from texels to textures.
-        let [x, y] = ellipse.along;
-        let squared = x * x + y * y;
-        let some = squared.simd_gt(zero) & squared.simd_le(f32x16::splat(simd, f32::MAX));
-        let length = (ellipse.major_squared / (some.select(squared, one) * eta * eta)).sqrt();
-        let [w, h] = [texture.size().x as f32, texture.size().y as f32];
-        let (step_s, step_t) = (x * length * (1.0 / w), y * length * (1.0 / h));
-        // Beyond so many textures the coarsest level answers, wherever a probe stands.
-        let farthest = f32x16::splat(simd, FARTHEST_STEP);
-        let some = some & step_s.abs().simd_le(farthest) & step_t.abs().simd_le(farthest);
-        let (step_s, step_t) = (some.select(step_s, zero), some.select(step_t, zero));
-        let half = eta * 0.5;
-        let whole = half.floor();
-        let rest = half - whole;
-        let parting = eta.simd_le(two);
-        let pairs = (parting.select(one, half.ceil())).reduce_max();
-        Self {
-            step_s,
-            step_t,
-            whole: parting.select(zero, whole),
-            end_at: parting.select((eta - one) * 0.5, whole + rest * 0.5),
-            end: parting.select(one, rest),
-            pairs: whole_number(pairs),
-        }
-    }
-}
-
-#[allow(
-    clippy::cast_possible_truncation,
-    clippy::cast_sign_loss,
-    reason = "a whole number from 1 to MAX_ANISOTROPY"
-)]
-fn whole_number(x: f32) -> u32 {
-    x as u32
 }

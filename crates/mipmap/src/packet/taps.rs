@@ -3,9 +3,11 @@ use fearless_simd::{Simd, f32x16, u32x16};
 use sampler::packet::{LANES, SheetTexels, Sums8, Sums16, SumsFloat, Tap, channels, codes};
 use sampler::{AddressMode, Filter};
 
-use super::course::{Course, total};
+use super::bicubic::Kernels;
+use super::course::Course;
 use super::finish::{Codes, Colours, pick, summed};
-use super::plan::{Line, Plan};
+use super::line::Line;
+use super::plan::{Plan, greatest_anisotropy};
 use super::{PackedPyramid, PacketFootprint};
 use crate::sample::{MipFilter, SamplerState};
 
@@ -32,6 +34,8 @@ enum Kind {
     Weighted,
     /// In every lane one texel of one level.
     Picked,
+    /// 2×2 texels of any weights.
+    Blocks,
 }
 
 impl Kind {
@@ -48,9 +52,7 @@ impl Kind {
 }
 
 impl Taps {
-    /// Finds them: what [`crate::sample`] reads of the texture by `state`, if [`super::reads`] accepts that.
-    ///
-    /// Other filters are read as the nearest that it accepts: bicubic as bilinear, Gaussian probes as equal ones.
+    /// Finds them: what [`crate::sample`] reads of the texture by `state`, exactly enough whatever its precision.
     #[inline(always)]
     pub fn find<S: Simd>(
         &mut self,
@@ -59,17 +61,34 @@ impl Taps {
         state: &SamplerState,
         footprint: &PacketFootprint<S>,
     ) {
+        let most = f32x16::splat(simd, greatest_anisotropy(state));
+        self.find_following(simd, texture, state, most, footprint);
+    }
+
+    /// As [`Self::find`]. `most`: as [`Plan::of`] takes it.
+    #[inline(always)]
+    pub(super) fn find_following<S: Simd>(
+        &mut self,
+        simd: S,
+        texture: &PackedPyramid,
+        state: &SamplerState,
+        most: f32x16<S>,
+        footprint: &PacketFootprint<S>,
+    ) {
         self.kind = Kind::of(texture, state);
         if self.kind == Kind::Picked {
             // So little work that a call would be half of it.
-            let plan = Plan::of(simd, texture, state, footprint);
+            let plan = Plan::of(simd, texture, state, most, footprint);
             let course = Course::new(simd, texture, state, footprint, &plan);
             self.begin(1, 1);
             course.nearest(&mut self.list[0]);
         } else {
             simd.vectorize(
                 #[inline(always)]
-                || self.find_weighted(simd, texture, state, footprint),
+                || {
+                    let plan = Plan::of(simd, texture, state, most, footprint);
+                    self.find_weighted(simd, texture, state, footprint, &plan);
+                },
             );
         }
     }
@@ -81,20 +100,51 @@ impl Taps {
         texture: &PackedPyramid,
         state: &SamplerState,
         footprint: &PacketFootprint<S>,
+        plan: &Plan<S>,
     ) {
-        let plan = Plan::of(simd, texture, state, footprint);
-        let course = Course::new(simd, texture, state, footprint, &plan);
+        let cubic = [state.magnify, state.minify]
+            .iter()
+            .any(|filter| matches!(filter, Filter::Bicubic(_)));
+        if cubic && let Some(kernels) = Kernels::of(simd, state, plan.minified) {
+            return simd.vectorize(
+                #[inline(always)]
+                || self.find_cubic(simd, texture, state, footprint, plan, &kernels),
+            );
+        }
+        let course = Course::new(simd, texture, state, footprint, plan);
         if plan.is_line {
-            let line = Line::of(simd, texture, &plan);
+            let line = Line::of(simd, texture, plan, state.probe_weights);
             self.begin(2 * course.levels, line.pairs as usize);
+            let mut total = u32x16::splat(simd, 0);
             for (pair, taps) in (0..).zip(self.list.chunks_exact_mut(self.a_step)) {
-                course.pair(&line, pair, taps);
+                total += course.pair(&line, pair, taps);
             }
-            self.total = Some(total(&line).to_array());
+            self.total = Some((total * 2).to_array());
         } else {
             self.begin(course.levels, 1);
             course.middle(&mut self.list);
         }
+    }
+
+    #[inline(always)]
+    fn find_cubic<S: Simd>(
+        &mut self,
+        simd: S,
+        texture: &PackedPyramid,
+        state: &SamplerState,
+        footprint: &PacketFootprint<S>,
+        plan: &Plan<S>,
+        kernels: &Kernels<S>,
+    ) {
+        self.kind = Kind::Blocks;
+        self.a_step = 1;
+        let total = if plan.is_line {
+            let line = Line::of(simd, texture, plan, state.probe_weights);
+            kernels.find(simd, texture, plan, Some(&line), footprint, &mut self.list)
+        } else {
+            kernels.find(simd, texture, plan, None, footprint, &mut self.list)
+        };
+        self.total = Some(total.to_array());
     }
 
     /// Room for so many, whatever they were.
@@ -143,9 +193,9 @@ impl Taps {
         }
     }
 
-    /// One function a kind of texel, however many callers.
+    /// The colours, interleaved. One function a kind of texel, however many callers.
     #[inline(always)]
-    fn texels<S: Simd>(&self, simd: S, texture: &PackedPyramid) -> [f32x16<S>; 4] {
+    pub(super) fn texels<S: Simd>(&self, simd: S, texture: &PackedPyramid) -> [f32x16<S>; 4] {
         match texture.sheet().texels() {
             SheetTexels::Codes8(texels) => simd.vectorize(
                 #[inline(always)]
@@ -160,6 +210,12 @@ impl Taps {
                 || summed::<S, SumsFloat<S>, Colours>(simd, texture, texels, self),
             ),
         }
+    }
+
+    /// Whether the weights are those of [`Tap::set_block`].
+    #[inline(always)]
+    pub(super) fn are_blocks(&self) -> bool {
+        self.kind == Kind::Blocks
     }
 
     pub(super) fn steps(&self) -> impl Iterator<Item = &[Tap]> {

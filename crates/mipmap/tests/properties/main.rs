@@ -16,6 +16,8 @@ mod kernels;
 mod lod;
 mod oracle;
 mod packet;
+mod packet_automatic;
+mod packet_ewa;
 mod pyramid;
 mod rip_map;
 mod stochastic;

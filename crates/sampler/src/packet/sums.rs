@@ -34,6 +34,16 @@ pub trait Sums<S: Simd>: Copy {
     #[inline(always)]
     fn carry(&mut self) {}
 
+    /// As [`Self::add`] of any weights, those of [`Tap::set_block`]. In [`Sums8`] the sum of their sizes is at most 2²³
+    /// (512 times [`ONE`]), beyond which sums wrap.
+    #[inline(always)]
+    fn add_block(&mut self, simd: S, texels: &[Self::Texel], stride: usize, tap: &Tap) {
+        self.add(simd, texels, stride, tap);
+    }
+
+    /// Adds the sums of another part of the same taps: rounding in f32 grows with the length of the parts.
+    fn add_part(&mut self, part: Self);
+
     /// The mean of the taps, interleaved RGBA: packet g holds lanes 4g to 4g + 3. Codes count as 0..=1.
     ///
     /// `total`: what they counted for in all, in units of 1/[`ONE`].
@@ -96,6 +106,13 @@ impl<S: Simd> Sums<S> for Sums8<S> {
             let codes: u16x32<S> = bytes.swizzle_dyn_within_blocks(by_channel).bitcast();
             self.0[group] += dot(codes & 0xff, left[group]);
             self.0[group] += dot(codes >> 8, right[group]);
+        }
+    }
+
+    #[inline(always)]
+    fn add_part(&mut self, part: Self) {
+        for (sum, part) in self.0.iter_mut().zip(part.0) {
+            *sum += part;
         }
     }
 
@@ -174,23 +191,25 @@ impl<S: Simd> Sums<S> for Sums16<S> {
 
     #[inline(always)]
     fn add(&mut self, simd: S, texels: &[u64], stride: usize, tap: &Tap) {
-        let left = u32x16::from_slice(simd, &tap.left);
-        let right = u32x16::from_slice(simd, &tap.right);
-        let upper = repeated((left & 0xffff) | (right << 16));
-        let lower = repeated((left >> 16) | (right & 0xffff_0000));
-        let quads = Quads::new(simd, texels, stride, &tap.offsets);
-        let beside = u8x64::block_splat(BESIDE.simd_into(simd));
-        for group in 0..4 {
-            let (mut above, mut below) = ([[0u64; 2]; 4], [[0u64; 2]; 4]);
-            for (lane, (above, below)) in above.iter_mut().zip(&mut below).enumerate() {
-                *above = quads.upper(4 * group + lane);
-                *below = quads.lower(4 * group + lane);
-            }
-            for (row, weights) in [(above, upper[group]), (below, lower[group])] {
-                let bytes: u8x64<S> = u64x8::from_slice(simd, row.as_flattened()).bitcast();
-                let codes: u16x32<S> = bytes.swizzle_dyn_within_blocks(beside).bitcast();
-                self.sums[group] += dot(codes, weights);
-            }
+        for (sum, [upper, lower]) in self.sums.iter_mut().zip(rows(simd, texels, stride, tap)) {
+            *sum += upper;
+            *sum += lower;
+        }
+    }
+
+    /// A row's products fill the integers.
+    #[inline(always)]
+    fn add_block(&mut self, simd: S, texels: &[u64], stride: usize, tap: &Tap) {
+        for (sum, [upper, lower]) in self.carried.iter_mut().zip(rows(simd, texels, stride, tap)) {
+            *sum += f32x16::float_from(upper) + f32x16::float_from(lower);
+        }
+    }
+
+    #[inline(always)]
+    fn add_part(&mut self, mut part: Self) {
+        part.carry();
+        for (sum, part) in self.carried.iter_mut().zip(part.carried) {
+            *sum += part;
         }
     }
 
@@ -217,6 +236,41 @@ impl<S: Simd> Sums<S> for Sums16<S> {
     }
 }
 
+/// The weighted sums of each row of 2×2 texels, interleaved RGBA: four lanes after four.
+#[inline(always)]
+fn rows<S: Simd>(simd: S, texels: &[u64], stride: usize, tap: &Tap) -> [[i32x16<S>; 2]; 4] {
+    let left = u32x16::from_slice(simd, &tap.left);
+    let right = u32x16::from_slice(simd, &tap.right);
+    let upper = repeated((left & 0xffff) | (right << 16));
+    let lower = repeated((left >> 16) | (right & 0xffff_0000));
+    let quads = Quads::new(simd, texels, stride, &tap.offsets);
+    let beside = u8x64::block_splat(BESIDE.simd_into(simd));
+    let mut sums = [[i32x16::splat(simd, 0); 2]; 4];
+    for group in 0..4 {
+        let (mut above, mut below) = ([[0u64; 2]; 4], [[0u64; 2]; 4]);
+        for (lane, (above, below)) in above.iter_mut().zip(&mut below).enumerate() {
+            *above = quads.upper(4 * group + lane);
+            *below = quads.lower(4 * group + lane);
+        }
+        sums[group] = [
+            row(simd, &above, beside, upper[group]),
+            row(simd, &below, beside, lower[group]),
+        ];
+    }
+    sums
+}
+
+#[inline(always)]
+fn row<S: Simd>(
+    simd: S,
+    texels: &[[u64; 2]; 4],
+    beside: u8x64<S>,
+    weights: u32x16<S>,
+) -> i32x16<S> {
+    let bytes: u8x64<S> = u64x8::from_slice(simd, texels.as_flattened()).bitcast();
+    dot(bytes.swizzle_dyn_within_blocks(beside).bitcast(), weights)
+}
+
 /// The unit of weights.
 const UNIT: f32 = 1.0 / ONE as f32;
 
@@ -226,16 +280,18 @@ fn float_weights<S: Simd>(simd: S, tap: &Tap) -> [[f32x16<S>; 4]; 4] {
     let left = u32x16::from_slice(simd, &tap.left);
     let right = u32x16::from_slice(simd, &tap.right);
     [
-        of_texel(left & 0xffff),
-        of_texel(right & 0xffff),
-        of_texel(left >> 16),
-        of_texel(right >> 16),
+        of_texel(left << 16),
+        of_texel(right << 16),
+        of_texel(left),
+        of_texel(right),
     ]
 }
 
+/// Of the signed high halves.
 #[inline(always)]
 fn of_texel<S: Simd>(weights: u32x16<S>) -> [f32x16<S>; 4] {
-    repeated_floats(f32x16::float_from(weights) * UNIT)
+    let weights: i32x16<S> = weights.bitcast();
+    repeated_floats(f32x16::float_from(weights >> 16) * UNIT)
 }
 
 impl<S: Simd> Sums<S> for SumsFloat<S> {
@@ -262,6 +318,13 @@ impl<S: Simd> Sums<S> for SumsFloat<S> {
             for (colours, weights) in colours.iter().zip(&weights) {
                 self.0[group] += f32x16::from_slice(simd, colours.as_flattened()) * weights[group];
             }
+        }
+    }
+
+    #[inline(always)]
+    fn add_part(&mut self, part: Self) {
+        for (sum, part) in self.0.iter_mut().zip(part.0) {
+            *sum += part;
         }
     }
 

@@ -1,5 +1,5 @@
 use fearless_simd::prelude::*;
-use fearless_simd::{Simd, u32x16};
+use fearless_simd::{Simd, i32x16, u32x16};
 
 use super::LANES;
 use super::sums::ONE;
@@ -27,6 +27,28 @@ pub struct Share<S: Simd> {
     pub lower: u32x16<S>,
     /// What the tap counts for, 0..=[`ONE`].
     pub weight: u32x16<S>,
+}
+
+/// What 2×2 texels count for in a packet's lookups, in units of 1/[`ONE`]: −2·[`ONE`] + 1 to 2·[`ONE`] − 1.
+///
+/// The weights of a lookup's blocks may add up to anything: who sums them says their total.
+#[derive(Clone, Copy, Debug)]
+pub struct BlockWeights<S: Simd> {
+    /// Weights of the upper left and right texel.
+    pub upper: [i32x16<S>; 2],
+    /// Weights of the lower left and right texel.
+    pub lower: [i32x16<S>; 2],
+}
+
+impl<S: Simd> BlockWeights<S> {
+    /// The sum of the four.
+    #[inline(always)]
+    #[must_use]
+    pub fn total(&self) -> i32x16<S> {
+        let [a, b] = self.upper;
+        let [c, d] = self.lower;
+        (a + b) + (c + d)
+    }
 }
 
 impl Tap {
@@ -58,6 +80,15 @@ impl Tap {
         pair(upper_right, lower_right).store_slice(&mut self.right);
     }
 
+    /// Becomes the tap of a block of 2×2 texels whose weights are free: what filters of any shape are made of.
+    #[inline(always)]
+    pub fn set_block<S: Simd>(&mut self, offsets: u32x16<S>, weights: &BlockWeights<S>) {
+        let ([a, b], [c, d]) = (weights.upper, weights.lower);
+        offsets.store_slice(&mut self.offsets);
+        signed_pair(a, c).store_slice(&mut self.left);
+        signed_pair(b, d).store_slice(&mut self.right);
+    }
+
     /// Becomes the tap of just the texels at `offsets`.
     #[inline(always)]
     pub fn set_single<S: Simd>(&mut self, simd: S, offsets: u32x16<S>) {
@@ -77,4 +108,11 @@ fn part_of<S: Simd>(weight: u32x16<S>, part: u32x16<S>) -> u32x16<S> {
 #[inline(always)]
 fn pair<S: Simd>(first: u32x16<S>, second: u32x16<S>) -> u32x16<S> {
     first | (second << 16)
+}
+
+/// Two weights of any sign in the halves of a lane.
+#[inline(always)]
+fn signed_pair<S: Simd>(first: i32x16<S>, second: i32x16<S>) -> u32x16<S> {
+    let (first, second): (u32x16<S>, u32x16<S>) = (first.bitcast(), second.bitcast());
+    (first & 0xffff) | (second << 16)
 }

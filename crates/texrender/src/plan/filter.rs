@@ -8,11 +8,11 @@ use crate::settings::FilterChoice;
 /// Which of `mipmap`'s filters reads a map.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum MapReading {
-    /// [`mipmap::sample`], as the sampler says.
+    /// [`mipmap::packet::Taps`], as the sampler says.
     Sampler,
-    /// [`mipmap::ewa`], with the sampler's address modes.
+    /// [`mipmap::packet::ewa`], with the sampler's address modes.
     Elliptic(EwaTier),
-    /// [`mipmap::automatic`], with the sampler but for its anisotropy.
+    /// [`mipmap::packet::automatic`], with the sampler but for its anisotropy.
     Automatic(Tolerance),
 }
 

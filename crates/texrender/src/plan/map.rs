@@ -42,10 +42,10 @@ pub struct ImageMap {
     pub texture: usize,
     /// Address modes and filters.
     pub sampler: SamplerState,
-    /// Whether another filter than the sampler's reads the pyramid.
+    /// Whether another filter than the sampler's reads it.
     pub reading: MapReading,
-    /// Index into [`super::Plan::sheets`]; `None` where packets do not read by that sampler or filter.
-    pub sheet: Option<usize>,
+    /// Index into [`super::Plan::sheets`].
+    pub sheet: usize,
 }
 
 impl KernelBuilder<'_> {
@@ -107,16 +107,13 @@ impl KernelBuilder<'_> {
             reason,
         );
         let reading = chosen_reading(self.plan.settings.filter, &sampler);
-        let in_packets = reading == MapReading::Sampler && mipmap::packet::reads(&sampler);
-        let tells_level = self.plan.settings.aovs.contains(&Aov::MipLevel);
-        if !in_packets || tells_level {
+        if self.plan.settings.aovs.contains(&Aov::MipLevel) {
             self.plan.textures[texture].readers = Readers::Pixels;
         }
         ImageMap {
             texture,
             reading,
-            sheet: in_packets
-                .then(|| SheetNeed::list(&mut self.plan.sheets, texture, sampler.address)),
+            sheet: SheetNeed::list(&mut self.plan.sheets, texture, sampler.address),
             sampler,
         }
     }

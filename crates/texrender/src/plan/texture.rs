@@ -33,7 +33,7 @@ pub struct TextureNeed {
 pub enum Readers {
     /// All from sheets laid out for packets: the pyramid is not kept beside them.
     Packets,
-    /// Some pixel by pixel, from the pyramid: by a filter that packets do not have, or to tell its level.
+    /// Some pixel by pixel, from the pyramid, to tell its level.
     Pixels,
 }
 

@@ -5,8 +5,8 @@ use std::cell::RefCell;
 use fearless_simd::f32x16;
 use fearless_simd::prelude::*;
 use glam::{DVec2, Vec2, Vec4};
-use mipmap::packet::{PacketFootprint, Taps};
-use mipmap::{Footprint, LodRule, Pyramid, SamplerState};
+use mipmap::packet::{self, PacketFootprint, Taps};
+use mipmap::{Footprint, LodRule, SamplerState};
 use sampler::solid::box_width;
 use texcoord::AffineTransform;
 
@@ -50,13 +50,13 @@ impl LastTaps {
         &mut self,
         simd: S,
         frame: &Frame,
-        (map, sheet): (&ImageMap, usize),
-        at: &Coordinates<S>,
+        map: &ImageMap,
+        footprint: &PacketFootprint<S>,
         place: Option<Place>,
     ) -> &Taps {
         let wanted = place.map(|at| Found {
             at,
-            sheet,
+            sheet: map.sheet,
             sampler: map.sampler,
         });
         let sheets = &frame.resources.sheets;
@@ -64,22 +64,13 @@ impl LastTaps {
             (Some(found), Some(wanted)) => {
                 found.at == wanted.at
                     && found.sampler == wanted.sampler
-                    && sheets[found.sheet].is_alike(&sheets[sheet])
+                    && sheets[found.sheet].is_alike(&sheets[map.sheet])
             }
             _ => false,
         };
         if !same {
-            let sheet = &sheets[sheet];
-            let (s, t) = sheet.reduce(at.s.0, at.t.0);
-            let footprint = PacketFootprint {
-                s,
-                t,
-                ds_dx: at.ds_dx,
-                dt_dx: at.dt_dx,
-                ds_dy: at.ds_dy,
-                dt_dy: at.dt_dy,
-            };
-            self.taps.find(simd, sheet, &map.sampler, &footprint);
+            self.taps
+                .find(simd, &sheets[map.sheet], &map.sampler, footprint);
             self.found = wanted;
         }
         &self.taps
@@ -99,13 +90,28 @@ pub(super) fn sample<S: Simd>(
     simd.vectorize(
         #[inline(always)]
         || {
-            let texels = match map.sheet {
-                Some(sheet) => {
-                    let mut last = last.borrow_mut();
-                    let taps = last.of(simd, frame, (map, sheet), at, place);
-                    taps.sample(simd, &frame.resources.sheets[sheet])
+            let sheet = &frame.resources.sheets[map.sheet];
+            let (s, t) = sheet.reduce(at.s.0, at.t.0);
+            let footprint = PacketFootprint {
+                s,
+                t,
+                ds_dx: at.ds_dx,
+                dt_dx: at.dt_dx,
+                ds_dy: at.ds_dy,
+                dt_dy: at.dt_dy,
+            };
+            let mut last = last.borrow_mut();
+            let texels = match map.reading {
+                MapReading::Sampler => {
+                    let taps = last.of(simd, frame, map, &footprint, place);
+                    taps.sample(simd, sheet)
                 }
-                None => one_by_one(simd, frame, map, at),
+                MapReading::Elliptic(tier) => packet::ewa(simd, sheet, tier, &footprint),
+                MapReading::Automatic(tolerance) => {
+                    last.forget();
+                    let taps = &mut last.taps;
+                    packet::automatic(simd, taps, sheet, &map.sampler, tolerance, &footprint)
+                }
             };
             match frame.plan.textures[map.texture].role {
                 TextureRole::ColourWithAlpha | TextureRole::AlphaTested { .. } => {
@@ -128,21 +134,6 @@ fn unpremultiplied<S: Simd>(simd: S, [r, g, b, alpha]: [f32x16<S>; 4]) -> [f32x1
         covered.select(b / alpha, zero),
         alpha,
     ]
-}
-
-/// For filters that read no packets.
-#[inline(always)]
-fn one_by_one<S: Simd>(
-    simd: S,
-    frame: &Frame,
-    map: &ImageMap,
-    at: &Coordinates<S>,
-) -> [f32x16<S>; 4] {
-    let pyramid = pyramid(frame, map);
-    let texels = at
-        .footprints()
-        .map(|footprint| read(pyramid, map, &footprint).0);
-    channels(simd, &texels)
 }
 
 /// Texels channel by channel.
@@ -193,20 +184,23 @@ pub(super) fn sample_source<S: Simd>(
     }
 }
 
-/// Levels of detail that a map is read at.
+/// Levels of detail that a map is read at; of filters that read several levels at once, that of the footprint's longer
+/// axis.
 pub(super) fn levels_of_detail<S: Simd>(
     frame: &Frame,
     map: &ImageMap,
     at: &Coordinates<S>,
 ) -> [f32; 16] {
-    let pyramid = pyramid(frame, map);
-    at.footprints()
-        .map(|footprint| read(pyramid, map, &footprint).1)
-}
-
-fn pyramid<'a>(frame: &Frame<'a>, map: &ImageMap) -> &'a Pyramid {
     let pyramid = frame.resources.textures[map.texture].as_ref();
-    pyramid.expect("the plan keeps what is read pixel by pixel")
+    let pyramid = pyramid.expect("the plan keeps the pyramids whose levels are told");
+    let last = (pyramid.levels() - 1) as f32;
+    at.footprints().map(|footprint| match map.reading {
+        MapReading::Sampler => mipmap::sample_with_lod(pyramid, &map.sampler, &footprint).1,
+        MapReading::Elliptic(_) | MapReading::Automatic(_) => {
+            let Footprint { dst_dx, dst_dy, .. } = footprint;
+            mipmap::lod(pyramid.size(), dst_dx, dst_dy, LodRule::Exact).clamp(0.0, last)
+        }
+    })
 }
 
 impl<S: Simd> Coordinates<S> {
@@ -218,26 +212,5 @@ impl<S: Simd> Coordinates<S> {
             dst_dx: Vec2::new(self.ds_dx[lane], self.dt_dx[lane]),
             dst_dy: Vec2::new(self.ds_dy[lane], self.dt_dy[lane]),
         })
-    }
-}
-
-/// Colour of a map under a footprint by the filter that was chosen for it, and its level of detail; of filters that
-/// read several levels at once, that of the footprint's longer axis.
-fn read(pyramid: &Pyramid, map: &ImageMap, footprint: &Footprint) -> (Vec4, f32) {
-    let longer = || {
-        let last = (pyramid.levels() - 1) as f32;
-        let Footprint { dst_dx, dst_dy, .. } = *footprint;
-        mipmap::lod(pyramid.size(), dst_dx, dst_dy, LodRule::Exact).clamp(0.0, last)
-    };
-    match map.reading {
-        MapReading::Sampler => mipmap::sample_with_lod(pyramid, &map.sampler, footprint),
-        MapReading::Elliptic(tier) => {
-            let texel = mipmap::ewa(pyramid, map.sampler.address, tier, footprint);
-            (texel, longer())
-        }
-        MapReading::Automatic(tolerance) => {
-            let texel = mipmap::automatic(pyramid, &map.sampler, tolerance, footprint);
-            (texel, longer())
-        }
     }
 }
