@@ -4,8 +4,8 @@ use fearless_simd::{Level, dispatch, prelude::*};
 use glam::{DVec3, DVec4, IVec2, UVec2};
 use proptest::prelude::*;
 use raster::{
-    Assembly, Bins, Cull, Frame, MeshPart, SamplePattern, SurfacePacket, TileGrid, Triangle,
-    Viewport, VisibilityTile, assemble_triangle, project,
+    Assembly, Bins, Cull, Frame, MeshPart, PacketTriangles, SamplePattern, SurfacePacket, TileGrid,
+    Triangle, Viewport, VisibilityTile, assemble_triangle, project,
 };
 use texcoord::packet::{F64x16, LANES, NEAR_WEIGHTS_MAX_RELATIVE_ERROR};
 
@@ -202,7 +202,8 @@ fn check_packets(
         let owners: [u32; LANES] =
             core::array::from_fn(|i| lanes.get(i).and_then(owner).unwrap_or(some));
         let (value, dx, dy) = dispatch!(level, simd => {
-            let weights = SurfacePacket::gather(simd, frame, &owners).weights(simd, frame, first);
+            let triangles = PacketTriangles::new(simd, frame, &owners);
+            let weights = SurfacePacket::gather(simd, frame, &triangles).weights(simd, frame, &triangles, first);
             let slopes = |v: [fearless_simd::f32x16<_>; 3]| v.map(|x| x.to_array());
             (weights.weights.map(F64x16::to_array), slopes(weights.d_dx), slopes(weights.d_dy))
         });
