@@ -17,11 +17,12 @@ use crate::samples::SampleExtent;
 use crate::scan::index;
 use crate::viewport::SUBPIXELS;
 
-/// Longest side, in units, of a triangle whose edge values fit the integers of f32 around it.
-const LONGEST: i32 = 7 * SUBPIXELS;
+/// Longest side, in units, of a triangle whose edge values fit the integers of f32 in its window: up to a pixel beyond its
+/// corners they are below 2·10·11·2¹⁶ < 2²⁴.
+const LONGEST: i32 = 10 * SUBPIXELS;
 
-/// Most pixels of the windows of a batch.
-pub(crate) const WINDOW: usize = 64;
+/// Most pixels of the windows of a batch: those of the largest triangle.
+pub(crate) const WINDOW: usize = 121;
 
 /// Up to 16 whole triangles, a lane each.
 pub(crate) struct Batch<S: Simd> {
