@@ -17,11 +17,12 @@ use crate::samples::SampleExtent;
 use crate::scan::index;
 use crate::viewport::SUBPIXELS;
 
-/// Longest side, in units, of a triangle whose edge values fit the integers of f32 around it.
-const LONGEST: i32 = 7 * SUBPIXELS;
+/// Longest side, in units, of a triangle whose edge values fit the integers of f32 in its window: up to a pixel beyond its
+/// corners they are below 2·10·11·2¹⁶ < 2²⁴.
+const LONGEST: i32 = 10 * SUBPIXELS;
 
-/// Most pixels of the windows of a batch.
-pub(crate) const WINDOW: usize = 64;
+/// Most pixels of the windows of a batch: those of the largest triangle.
+pub(crate) const WINDOW: usize = 121;
 
 /// Up to 16 whole triangles, a lane each.
 pub(crate) struct Batch<S: Simd> {
@@ -73,12 +74,20 @@ struct Depths<S: Simd> {
 }
 
 impl<S: Simd> Batch<S> {
-    /// The triangles of whole owners, which count up, in lanes 0 to `last`.
+    /// The triangles of up to 16 owners, at least one, which count up; `None` if there is a piece of one among them.
     #[inline(always)]
-    pub(crate) fn gather(simd: S, frame: &Frame, owners: &[u32; LANES], last: usize) -> Self {
+    pub(crate) fn gather(simd: S, frame: &Frame, owners: &[u32]) -> Option<Self> {
+        let last = owners.len() - 1;
+        let lanes: [u32; LANES] = match owners.try_into() {
+            Ok(lanes) => lanes,
+            Err(_) => core::array::from_fn(|lane| owners[lane.min(last)]),
+        };
+        if !frame.are_whole(&lanes) {
+            return None;
+        }
         let [a, b, c, _] = columns(
             #[inline(always)]
-            |lane| u32x4::from_slice(simd, &frame.whole(owners[lane]).words),
+            |lane| u32x4::from_slice(simd, &frame.whole(lanes[lane]).words),
         );
         let triangles = [a.to_array(), b.to_array(), c.to_array()];
         let corner = |k: usize, lane: usize| frame.vertex(triangles[k][lane]);
@@ -91,7 +100,7 @@ impl<S: Simd> Batch<S> {
                 )
             },
         );
-        Self {
+        Some(Self {
             x: three(
                 #[inline(always)]
                 |k| words[k][0].bitcast(),
@@ -110,19 +119,19 @@ impl<S: Simd> Batch<S> {
                     )
                 },
             ),
-            owners: u32x16::from_slice(simd, owners),
+            owners: lanes.simd_into(simd),
             last: owners[last],
             used: i32x16::from_fn(simd, lane_number).simd_le(lane_number(last)),
-        }
+        })
     }
 
-    /// Draws the triangles through their windows, for samples at `positions` in a pixel. No sample that was written is nearer than what comes back.
+    /// Draws the triangles through their windows, for the sample at `position` in each pixel. No sample that was written is nearer than what comes back.
     #[inline(always)]
     pub(crate) fn draw(
         &self,
         simd: S,
         windows: &Windows<S>,
-        positions: &[IVec2],
+        position: IVec2,
         covered: &mut Covered,
         buffer: &mut SampleBuffer,
     ) -> f32 {
@@ -134,21 +143,28 @@ impl<S: Simd> Batch<S> {
         let depths = Depths::new(simd, self.depth, edges.area);
         let stride = index_step(buffer.stride());
         let corners: u32x16<S> = (windows.min[1] * stride + windows.min[0]).bitcast();
-        for (sample, position) in positions.iter().enumerate() {
-            covered.clear();
-            for row in 0..windows.largest[1] {
-                for column in 0..windows.largest[0] {
-                    let (inside, b, c) = edges.inside(windows, [column, row], *position);
-                    if inside.any_true() {
-                        let depth = depths.at(b, c);
-                        let places = corners + (row * stride + column).cast_unsigned();
-                        covered.push(inside, places, self.owners, depth);
-                        nearest = inside.select(nearest.max(depth), nearest);
-                    }
+        let steps = three(
+            #[inline(always)]
+            |k| edges.along_x[k] * SUBPIXELS as f32,
+        );
+        covered.clear();
+        for row in 0..windows.largest[1] {
+            let open = windows.open & windows.size[1].simd_gt(row);
+            let mut values = edges.row(row, position);
+            for column in 0..windows.largest[0] {
+                let inside = edges.inside(&values) & open & windows.size[0].simd_gt(column);
+                if inside.any_true() {
+                    let depth = depths.at(values[1], values[2]);
+                    let places = corners + (row * stride + column).cast_unsigned();
+                    covered.push(inside, places, self.owners, depth);
+                    nearest = inside.select(nearest.max(depth), nearest);
+                }
+                for (value, step) in values.iter_mut().zip(&steps) {
+                    *value += *step;
                 }
             }
-            covered.write(self.last, sample, buffer);
         }
+        covered.write(self.last, buffer);
         nearest.reduce_max()
     }
 
@@ -248,27 +264,23 @@ impl<S: Simd> Edges<S> {
         }
     }
 
-    /// Lanes that cover a sample of the pixel in a column and row of their windows, and edges 1 and 2 there.
+    /// Values at the sample of the first pixel in a row of the windows.
     #[inline(always)]
-    fn inside(
-        &self,
-        windows: &Windows<S>,
-        [column, row]: [i32; 2],
-        position: IVec2,
-    ) -> (mask32x16<S>, f32x16<S>, f32x16<S>) {
-        let x = (column * SUBPIXELS + position.x) as f32;
+    fn row(&self, row: i32, position: IVec2) -> [f32x16<S>; 3] {
+        let x = position.x as f32;
         let y = (row * SUBPIXELS + position.y) as f32;
-        let [a, b, c] = three(
+        three(
             #[inline(always)]
             |k| self.values[k] + (self.along_x[k] * x + self.along_y[k] * y),
-        );
-        let inside = a.simd_gt(self.bounds[0])
-            & b.simd_gt(self.bounds[1])
-            & c.simd_gt(self.bounds[2])
-            & windows.open
-            & windows.size[0].simd_gt(column)
-            & windows.size[1].simd_gt(row);
-        (inside, b, c)
+        )
+    }
+
+    /// Lanes that cover a sample with these values.
+    #[inline(always)]
+    fn inside(&self, values: &[f32x16<S>; 3]) -> mask32x16<S> {
+        values[0].simd_gt(self.bounds[0])
+            & values[1].simd_gt(self.bounds[1])
+            & values[2].simd_gt(self.bounds[2])
     }
 }
 

@@ -17,7 +17,7 @@ const ROOM: usize = (WINDOW + 1) * LANES;
 #[derive(Clone, Debug)]
 pub(crate) struct Covered {
     count: usize,
-    /// Index of the sample among those of its plane.
+    /// Index of the sample in the buffer.
     places: [u32; ROOM],
     owners: [u32; ROOM],
     depths: [f32; ROOM],
@@ -57,15 +57,15 @@ impl Covered {
         self.count += inside.to_bitmask().count_ones() as usize;
     }
 
-    /// Writes what is in front, for one sample of each pixel.
+    /// Writes what is in front.
     ///
     /// The list is not in order of submission, but owners are: of those in the list, up to `last`, the first one at a
     /// sample keeps it from others of the same depth.
     #[inline(always)]
-    pub(crate) fn write(&self, last: u32, sample: usize, buffer: &mut SampleBuffer) {
+    pub(crate) fn write(&self, last: u32, buffer: &mut SampleBuffer) {
         let found = self.places[..self.count].iter().zip(&self.owners);
         for ((&place, &owner), &depth) in found.zip(&self.depths) {
-            let at = buffer.place(place as usize, 0, sample);
+            let at = place as usize;
             let (old, old_owner) = (buffer.depth(at), buffer.owner(at));
             let before = (owner < old_owner) & (old_owner <= last);
             let wins = (depth > old) | ((depth == old) & before);

@@ -171,19 +171,25 @@ impl Frame {
 
     #[inline(always)]
     fn draw_owners<S: Simd>(&self, simd: S, owners: &[u32], visibility: &mut VisibilityTile) {
-        let single = visibility.pattern().count() == 1;
+        if visibility.pattern().count() > 1 {
+            return self.draw_each(simd, owners, visibility);
+        }
         for owners in owners.chunks(LANES) {
-            let mut lanes = [owners[0]; LANES];
-            lanes[..owners.len()].copy_from_slice(owners);
-            if single && self.are_whole(&lanes) {
-                let batch = Batch::gather(simd, self, &lanes, owners.len() - 1);
-                if visibility.draw_batch(simd, &batch) {
-                    continue;
-                }
+            let drawn = match Batch::gather(simd, self, owners) {
+                Some(batch) => visibility.draw_batch(simd, &batch),
+                None => false,
+            };
+            if !drawn {
+                self.draw_each(simd, owners, visibility);
             }
-            for &owner in owners {
-                visibility.draw_corners(simd, owner, &self.corners(owner));
-            }
+        }
+    }
+
+    /// Draws triangles one by one.
+    #[inline(always)]
+    fn draw_each<S: Simd>(&self, simd: S, owners: &[u32], visibility: &mut VisibilityTile) {
+        for &owner in owners {
+            visibility.draw_corners(simd, owner, &self.corners(owner));
         }
     }
 

@@ -107,7 +107,7 @@ pub use chunk::{CHUNK_TRIANGLES, Chunk, MeshPart};
 pub use error::Error;
 pub use frame::{Assembler, Frame, MAX_CHUNKS, Surface};
 pub use owners::{OwnerRows, Owners};
-pub use packet::SurfacePacket;
+pub use packet::{PacketTriangles, SurfacePacket};
 pub use planes::{DepthFunction, Planes};
 pub use samples::{MAX_SAMPLES, SamplePattern};
 pub use stroke::{assemble_line, assemble_point};

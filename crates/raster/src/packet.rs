@@ -10,17 +10,50 @@ use crate::chunk::columns_and_rows;
 use crate::viewport::SUBPIXELS;
 use crate::{Frame, Surface};
 
-/// The triangles that 16 pixels of a row see: first who and where their corners are, then what they weigh.
+/// The triangles that 16 pixels of a row see, by their corners.
 ///
-/// Two steps, so that the caller can have the corners of the next packet on their way while it works on this one.
+/// The first of three steps, so that the caller can have what the next packets need on its way while it works on one:
+/// these, then a [`SurfacePacket`], then its [weights](SurfacePacket::weights).
 #[derive(Clone, Copy, Debug)]
-pub struct SurfacePacket<S: Simd> {
-    /// Their corners among the vertices of the frame, corner by corner a lane each.
+pub struct PacketTriangles {
+    /// Corners among the vertices of the frame, corner by corner a lane each.
     pub vertices: [[u32; LANES]; 3],
     owners: [u32; LANES],
-    /// The first words of the vertices, unless a triangle is a piece of one: columns, rows, 1/w.
-    words: [[u32x16<S>; 3]; 3],
+    /// Whether none is a piece of a triangle.
     are_whole: bool,
+}
+
+/// Where the corners of the triangles are that 16 pixels of a row see.
+#[derive(Clone, Copy, Debug)]
+pub struct SurfacePacket<S: Simd> {
+    /// The first words of the vertices, of use unless a triangle is a piece of one: columns, rows, 1/w.
+    words: [[u32x16<S>; 3]; 3],
+}
+
+impl PacketTriangles {
+    /// The triangles of 16 owners.
+    ///
+    /// # Panics
+    /// If an owner is not one that the frame gave.
+    #[inline(always)]
+    #[must_use]
+    pub fn new<S: Simd>(simd: S, frame: &Frame, owners: &[u32; LANES]) -> Self {
+        let are_whole = frame.are_whole(owners);
+        let vertices = if are_whole {
+            let [a, b, c, _] = columns(
+                #[inline(always)]
+                |lane| u32x4::from_slice(simd, &frame.whole(owners[lane]).words),
+            );
+            [a.to_array(), b.to_array(), c.to_array()]
+        } else {
+            frame.corners_of_any(owners)
+        };
+        Self {
+            vertices,
+            owners: *owners,
+            are_whole,
+        }
+    }
 }
 
 /// Units from a pixel's centre to where a near corner must lie, each way: sums of products fit 32 bits.
@@ -33,26 +66,11 @@ struct Places<S: Simd> {
 }
 
 impl<S: Simd> SurfacePacket<S> {
-    /// The triangles of 16 owners.
-    ///
-    /// # Panics
-    /// If an owner is not one that the frame gave.
+    /// The corners of triangles of `frame`.
     #[inline(always)]
     #[must_use]
-    pub fn gather(simd: S, frame: &Frame, owners: &[u32; LANES]) -> Self {
-        if !frame.are_whole(owners) {
-            return Self {
-                vertices: frame.corners_of_any(owners),
-                owners: *owners,
-                words: [[u32x16::splat(simd, 0); 3]; 3],
-                are_whole: false,
-            };
-        }
-        let mut vertices = [[0; LANES]; 3];
-        for (lane, &owner) in owners.iter().enumerate() {
-            let [a, b, c] = frame.whole(owner).vertices();
-            (vertices[0][lane], vertices[1][lane], vertices[2][lane]) = (a, b, c);
-        }
+    pub fn gather(simd: S, frame: &Frame, triangles: &PacketTriangles) -> Self {
+        let vertices = &triangles.vertices;
         let words = three(
             #[inline(always)]
             |k| {
@@ -63,18 +81,13 @@ impl<S: Simd> SurfacePacket<S> {
                 [x, y, inv_w]
             },
         );
-        Self {
-            vertices,
-            owners: *owners,
-            words,
-            are_whole: true,
-        }
+        Self { words }
     }
 
     /// Weights of the corners at the centres of 16 pixels of a row, the first of them `first`; of the corners of the
     /// whole triangles, also where a pixel sees a piece that clipping left.
     ///
-    /// `frame`: the one that the owners are of. A pixel whose centre is outside of its triangle gets weights that
+    /// `frame`, `triangles`: those that it was gathered from. A pixel whose centre is outside of its triangle gets weights that
     /// extrapolate.
     ///
     /// # Accuracy
@@ -82,8 +95,14 @@ impl<S: Simd> SurfacePacket<S> {
     /// [`texcoord::packet::near_weights`], else as [`texcoord::packet::quick_weights`].
     #[inline(always)]
     #[must_use]
-    pub fn weights(&self, simd: S, frame: &Frame, first: UVec2) -> PacketWeights<S> {
-        if self.are_whole {
+    pub fn weights(
+        &self,
+        simd: S,
+        frame: &Frame,
+        triangles: &PacketTriangles,
+        first: UVec2,
+    ) -> PacketWeights<S> {
+        if triangles.are_whole {
             let words = &self.words;
             let corners = three(
                 #[inline(always)]
@@ -98,7 +117,7 @@ impl<S: Simd> SurfacePacket<S> {
                 return places.near_weights(simd, &inv_w);
             }
         }
-        any_weights(simd, frame, &self.owners, first)
+        any_weights(simd, frame, &triangles.owners, first)
     }
 }
 

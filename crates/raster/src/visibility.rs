@@ -295,7 +295,7 @@ impl VisibilityTile {
         };
         self.write_layer(simd);
         let (covered, buffer) = (&mut self.covered, &mut self.buffer);
-        let nearest = batch.draw(simd, &windows, self.pattern.positions(), covered, buffer);
+        let nearest = batch.draw(simd, &windows, self.pattern.positions()[0], covered, buffer);
         self.nearest = self.nearest.max(nearest);
         true
     }

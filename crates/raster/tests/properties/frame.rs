@@ -4,8 +4,8 @@ use fearless_simd::{Level, dispatch, prelude::*};
 use glam::{DVec3, DVec4, IVec2, UVec2};
 use proptest::prelude::*;
 use raster::{
-    Assembly, Bins, Cull, Frame, MeshPart, SamplePattern, SurfacePacket, TileGrid, Triangle,
-    Viewport, VisibilityTile, assemble_triangle, project,
+    Assembly, Bins, Cull, Frame, MeshPart, PacketTriangles, SamplePattern, SurfacePacket, TileGrid,
+    Triangle, Viewport, VisibilityTile, assemble_triangle, project,
 };
 use texcoord::packet::{F64x16, LANES, NEAR_WEIGHTS_MAX_RELATIVE_ERROR};
 
@@ -61,12 +61,14 @@ fn mesh() -> impl Strategy<Value = (Vec<DVec4>, Vec<[u32; 3]>)> {
     })
 }
 
-/// Many triangles of about a pixel in a few planes: sixteen at once are small, and many depths are equal.
-fn pixel_sized() -> impl Strategy<Value = (Vec<DVec4>, Vec<[u32; 3]>)> {
+/// Many triangles of a pixel, or of up to twelve, in a few planes: sixteen at once are small, or just not, and many
+/// depths are equal.
+fn small() -> impl Strategy<Value = (Vec<DVec4>, Vec<[u32; 3]>)> {
     let plane = proptest::sample::select(vec![0.25, 0.5, 0.75]);
-    let point = (-0.04..0.04f64, -0.04..0.04f64, plane);
-    let points = proptest::collection::vec(point, 20..60).prop_map(|points| {
-        let at = |(x, y, z): &(f64, f64, f64)| DVec4::new(*x, *y, *z, 1.0);
+    let point = (-1.0..1.0f64, -1.0..1.0f64, plane);
+    let reach = proptest::sample::select(vec![0.04, 0.09, 0.12]);
+    let points = (proptest::collection::vec(point, 20..60), reach).prop_map(|(points, reach)| {
+        let at = |(x, y, z): &(f64, f64, f64)| DVec4::new(x * reach, y * reach, *z, 1.0);
         points.iter().map(at).collect::<Vec<_>>()
     });
     points.prop_flat_map(|points| {
@@ -141,7 +143,7 @@ proptest! {
 
     #[test]
     fn a_frame_is_what_its_triangles_are(
-        (points, triangles) in prop_oneof![mesh(), pixel_sized()], back in any::<bool>(), tile_size in prop_oneof![Just(32u32), Just(64), 5u32..70],
+        (points, triangles) in prop_oneof![mesh(), small()], back in any::<bool>(), tile_size in prop_oneof![Just(32u32), Just(64), 5u32..70],
         count in proptest::sample::select(COUNTS[..4].to_vec()),
     ) {
         let (pattern, cull) = (pattern(count), if back { Cull::Back } else { Cull::None });
@@ -202,7 +204,8 @@ fn check_packets(
         let owners: [u32; LANES] =
             core::array::from_fn(|i| lanes.get(i).and_then(owner).unwrap_or(some));
         let (value, dx, dy) = dispatch!(level, simd => {
-            let weights = SurfacePacket::gather(simd, frame, &owners).weights(simd, frame, first);
+            let triangles = PacketTriangles::new(simd, frame, &owners);
+            let weights = SurfacePacket::gather(simd, frame, &triangles).weights(simd, frame, &triangles, first);
             let slopes = |v: [fearless_simd::f32x16<_>; 3]| v.map(|x| x.to_array());
             (weights.weights.map(F64x16::to_array), slopes(weights.d_dx), slopes(weights.d_dy))
         });

@@ -3,8 +3,13 @@
 use fearless_simd::{Simd, f32x4, f32x16, mask32x16, prelude::*, u32x16};
 use glam::UVec2;
 use mipmap::SamplerState;
+<<<<<<< HEAD
 use mipmap::packet::{PackedPyramid, PacketFootprint, Taps};
 use raster::{Frame, SurfacePacket, VisibilityTile};
+=======
+use mipmap::packet::{PackedPyramid, PacketFootprint, sample, sample_codes};
+use raster::{Frame, PacketTriangles, SurfacePacket, VisibilityTile};
+>>>>>>> h1
 use texcoord::packet::{F64x16, LANES, PacketWeights, columns};
 use texcoord::planes::{CoordinatePlanes, PacketCoordinates};
 use texcoord::unrolled::{four, three, two};
@@ -36,10 +41,16 @@ struct LastPlanes {
     planes: CoordinatePlanes,
 }
 
+/// The triangles that 16 pixels see, and which pixels see one.
+#[derive(Clone, Copy)]
+struct Covered<S: Simd> {
+    covered: mask32x16<S>,
+    triangles: PacketTriangles,
+}
+
 /// Corners of the triangles that 16 pixels see, on their way while the packet before is shaded.
 #[derive(Clone, Copy)]
 struct Corners<S: Simd, const ROWS: usize> {
-    covered: mask32x16<S>,
     surfaces: SurfacePacket<S>,
     /// Attributes of the corners, row by row.
     rows: [[[f32x16<S>; 4]; 3]; ROWS],
@@ -147,9 +158,11 @@ impl TileShader<'_> {
         simd.vectorize(
             #[inline(always)]
             || {
-                let Some(&first) = mixed.places.first() else {
+                let places = &mixed.places;
+                let Some(&first) = places.first() else {
                     return;
                 };
+<<<<<<< HEAD
                 // The one that is shaded and the one on its way, in turn.
                 let mut slots = [self.corners::<S, ROWS>(simd, mixed, first); 2];
                 for (k, &at) in mixed.places.iter().enumerate() {
@@ -159,6 +172,21 @@ impl TileShader<'_> {
                         *next = self.corners(simd, mixed, after);
                     }
                     let found = self.packet(simd, now, pixel(corner, at), taps);
+=======
+                // Places past the last stand for it: what is fetched for them is not used.
+                let place = |k: usize| places[k.min(places.len() - 1)];
+                let mut triangles = [self.triangles(simd, mixed, first); 3];
+                let mut corners = [self.corners::<S, ROWS>(simd, &triangles[0].triangles); 2];
+                triangles[1] = self.triangles(simd, mixed, place(1));
+                for (k, &at) in places.iter().enumerate() {
+                    // The one that is shaded, the next, and the one after that.
+                    let [now, next, after] = [k % 3, (k + 1) % 3, (k + 2) % 3];
+                    triangles[after] = self.triangles(simd, mixed, place(k + 2));
+                    corners[(k + 1) % 2] = self.corners(simd, &triangles[next].triangles);
+                    let now = &triangles[now];
+                    let first = pixel(corner, at);
+                    let found = self.packet(simd, &now.triangles, &corners[k % 2], first);
+>>>>>>> h1
                     let found = now.covered.select(found, u32x16::splat(simd, CLEAR));
                     let row = &mut rows[at[1]][at[0]..];
                     let width = row.len().min(LANES);
@@ -169,35 +197,39 @@ impl TileShader<'_> {
     }
 
     #[inline(always)]
+    fn triangles<S: Simd>(&self, simd: S, mixed: &Mixed<'_>, at: [usize; 2]) -> Covered<S> {
+        let (owners, covered) = mixed.owners(simd, at);
+        Covered {
+            covered,
+            triangles: PacketTriangles::new(simd, self.frame, &owners),
+        }
+    }
+
+    #[inline(always)]
     fn corners<S: Simd, const ROWS: usize>(
         &self,
         simd: S,
-        mixed: &Mixed<'_>,
-        at: [usize; 2],
+        triangles: &PacketTriangles,
     ) -> Corners<S, ROWS> {
-        let (owners, covered) = mixed.owners(simd, at);
-        let surfaces = SurfacePacket::gather(simd, self.frame, &owners);
+        let surfaces = SurfacePacket::gather(simd, self.frame, triangles);
         let mut rows = [[[f32x16::splat(simd, 0.0); 4]; 3]; ROWS];
         for (row, attributes) in rows.iter_mut().enumerate() {
-            *attributes = self.row(simd, row, &surfaces);
+            *attributes = self.row(simd, row, triangles);
         }
-        Corners {
-            covered,
-            surfaces,
-            rows,
-        }
+        Corners { surfaces, rows }
     }
 
     #[inline(always)]
     fn packet<S: Simd, const ROWS: usize>(
         &self,
         simd: S,
+        triangles: &PacketTriangles,
         corners: &Corners<S, ROWS>,
         first: UVec2,
         taps: &mut Taps,
     ) -> u32x16<S> {
-        let Corners { surfaces, rows, .. } = corners;
-        let weights = surfaces.weights(simd, self.frame, first);
+        let Corners { surfaces, rows } = corners;
+        let weights = surfaces.weights(simd, self.frame, triangles, first);
         let coordinates = coordinates(&weights, &rows[0]);
         let footprint = footprint(self.textures[0], &coordinates);
         taps.find(simd, self.textures[0], self.state, &footprint);
@@ -214,7 +246,7 @@ impl TileShader<'_> {
         let [_, _, nx, ny] = mixed(&weights, &rows[0]);
         let [nz, px, py, pz] = mixed(&weights, &rows[1]);
         let (normal, position) = ([nx, ny, nz], [px, py, pz]);
-        let to_eye = self.eye_direction(simd, surfaces, position);
+        let to_eye = self.eye_direction(simd, triangles, position);
         let (normal, highlight) = if ROWS == 3 {
             // Textures of one shape at one place.
             let [x, y, z, _] = taps.sample(simd, self.textures[1]);
@@ -233,10 +265,10 @@ impl TileShader<'_> {
     fn eye_direction<S: Simd>(
         &self,
         simd: S,
-        surfaces: &SurfacePacket<S>,
+        triangles: &PacketTriangles,
         position: Vectors<S>,
     ) -> Vectors<S> {
-        let instances = u32x16::from_slice(simd, &surfaces.vertices[0]) >> self.vertex_bits;
+        let instances = u32x16::from_slice(simd, &triangles.vertices[0]) >> self.vertex_bits;
         let place = if instances.simd_eq(instances[0]).all_true() {
             let place = self.scene.instances[instances[0] as usize];
             three(
@@ -273,7 +305,7 @@ impl TileShader<'_> {
         &self,
         simd: S,
         row: usize,
-        surfaces: &SurfacePacket<S>,
+        triangles: &PacketTriangles,
     ) -> [[f32x16<S>; 4]; 3] {
         let rows = &self.scene.mesh.rows[row];
         three(
@@ -282,7 +314,7 @@ impl TileShader<'_> {
                 let attributes = columns(
                     #[inline(always)]
                     |lane| {
-                        let vertex = self.vertex(surfaces.vertices[corner][lane]);
+                        let vertex = self.vertex(triangles.vertices[corner][lane]);
                         f32x4::from_slice(simd, &rows[vertex]).bitcast()
                     },
                 );
