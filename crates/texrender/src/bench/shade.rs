@@ -3,13 +3,8 @@
 use fearless_simd::{Simd, f32x4, f32x16, mask32x16, prelude::*, u32x16};
 use glam::UVec2;
 use mipmap::SamplerState;
-<<<<<<< HEAD
-use mipmap::packet::{PackedPyramid, PacketFootprint, Taps};
-use raster::{Frame, SurfacePacket, VisibilityTile};
-=======
 use mipmap::packet::{PackedPyramid, PacketFootprint, sample, sample_codes};
 use raster::{Frame, PacketTriangles, SurfacePacket, VisibilityTile};
->>>>>>> h1
 use texcoord::packet::{F64x16, LANES, PacketWeights, columns};
 use texcoord::planes::{CoordinatePlanes, PacketCoordinates};
 use texcoord::unrolled::{four, three, two};
@@ -162,17 +157,6 @@ impl TileShader<'_> {
                 let Some(&first) = places.first() else {
                     return;
                 };
-<<<<<<< HEAD
-                // The one that is shaded and the one on its way, in turn.
-                let mut slots = [self.corners::<S, ROWS>(simd, mixed, first); 2];
-                for (k, &at) in mixed.places.iter().enumerate() {
-                    let [even, odd] = &mut slots;
-                    let (now, next) = if k % 2 == 0 { (even, odd) } else { (odd, even) };
-                    if let Some(&after) = mixed.places.get(k + 1) {
-                        *next = self.corners(simd, mixed, after);
-                    }
-                    let found = self.packet(simd, now, pixel(corner, at), taps);
-=======
                 // Places past the last stand for it: what is fetched for them is not used.
                 let place = |k: usize| places[k.min(places.len() - 1)];
                 let mut triangles = [self.triangles(simd, mixed, first); 3];
@@ -185,8 +169,7 @@ impl TileShader<'_> {
                     corners[(k + 1) % 2] = self.corners(simd, &triangles[next].triangles);
                     let now = &triangles[now];
                     let first = pixel(corner, at);
-                    let found = self.packet(simd, &now.triangles, &corners[k % 2], first);
->>>>>>> h1
+                    let found = self.packet(simd, &now.triangles, &corners[k % 2], first, taps);
                     let found = now.covered.select(found, u32x16::splat(simd, CLEAR));
                     let row = &mut rows[at[1]][at[0]..];
                     let width = row.len().min(LANES);
