@@ -3,7 +3,7 @@
 use fearless_simd::{Simd, f32x4, f32x16, mask32x16, prelude::*, u32x16};
 use glam::UVec2;
 use mipmap::SamplerState;
-use mipmap::packet::{PackedPyramid, PacketFootprint, sample, sample_codes};
+use mipmap::packet::{PackedPyramid, PacketFootprint, Taps};
 use raster::{Frame, PacketTriangles, SurfacePacket, VisibilityTile};
 use texcoord::packet::{F64x16, LANES, PacketWeights, columns};
 use texcoord::planes::{CoordinatePlanes, PacketCoordinates};
