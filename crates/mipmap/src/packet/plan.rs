@@ -86,10 +86,15 @@ impl<S: Simd> Plan<S> {
             let major = ellipse.major_squared.sqrt();
             eta = followed(simd, major, aspect, most, state.magnify);
             eta = ellipse.bounded.select(eta, one);
-            // Where η is all of the longer axis, λ is 0 exactly, and neither side of it.
-            lambda = packet_log2(simd, major / eta);
+            let log_eta = packet_log2(simd, eta);
+            if state.magnify == state.minify {
+                lambda -= log_eta;
+            } else {
+                // Where η is all of the longer axis, λ is 0 exactly, and neither side of it.
+                lambda = packet_log2(simd, major / eta);
+            }
             if state.lod_rule == LodRule::Exact {
-                lambda -= sharpened(simd, packet_log2(simd, aspect / eta));
+                lambda -= sharpened(simd, packet_log2(simd, aspect) - log_eta);
             }
         }
         let lambda = ellipse
