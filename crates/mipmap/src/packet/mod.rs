@@ -68,8 +68,8 @@ pub struct PacketFootprint<S: Simd> {
     pub dt_dy: f32x16<S>,
 }
 
-/// The colours under sixteen footprints, a packet a channel: as [`crate::sample`], exactly enough whatever the state's
-/// precision.
+/// The colours under sixteen footprints, a packet a channel: as [`crate::sample`], but for the state's precision, which
+/// scalar lookups alone have.
 ///
 /// # Accuracy
 /// See the [module](self).
