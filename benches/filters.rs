@@ -1,5 +1,6 @@
 //! Each texture filter on a floor in perspective: ns a lookup beside its error against the mean over the pixel's square,
-//! and against that under a Gaussian of σ = ½ pixel, which some filters aim at. Ids `mipmap/filter/NAME`.
+//! and against that under a Gaussian of σ = ½ pixel, which some filters aim at. Ids `mipmap/filter/NAME`, and
+//! `mipmap/filter_packet/NAME` of the same sixteen pixels at a time.
 
 use std::cell::LazyCell;
 use std::hint::black_box;
@@ -7,12 +8,14 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use criterion::{BenchmarkId, Criterion, Throughput};
+use fearless_simd::{Level, dispatch, f32x16, prelude::*};
 use glam::{DVec2, DVec3, UVec2, Vec2, Vec4};
+use mipmap::packet::{self, PackedPyramid, PacketFootprint, Taps};
 use mipmap::{
     Content, EwaTier, Footprint, MipFilter, ProbeWeights, Pyramid, RipMap, SamplerState,
     SummedArea, Tolerance, automatic, blue_noise, ewa, stochastic,
 };
-use sampler::{AddressMode, Filter, Texels, Texture, Transfer};
+use sampler::{AddressMode, Cubic, Filter, Texels, Texture, Transfer};
 
 /// Texels along an edge of the checkered texture, and of one of its cells.
 const TEXELS: u32 = 256;
@@ -29,6 +32,8 @@ const FARTHEST: f64 = 800.0;
 /// Rays along an edge of a pixel, and of the four pixels that a Gaussian sees, for the references.
 const RAYS: [u32; 2] = [24, 64];
 const REPEAT: [AddressMode; 2] = [AddressMode::Repeat; 2];
+/// Of the automatic choice.
+const TOLERANCES: [f32; 4] = [0.05, 0.02, 0.01, 0.005];
 
 pub(crate) fn bench(criterion: &mut Criterion) {
     let pixels: Vec<Pixel> = (0..SIZE * SIZE)
@@ -59,6 +64,122 @@ pub(crate) fn bench(criterion: &mut Criterion) {
         });
     }
     group.finish();
+    bench_packets(criterion, &pixels, &references);
+}
+
+/// The same filters sixteen pixels at a time, in the best instruction set that there is.
+fn bench_packets(
+    criterion: &mut Criterion,
+    pixels: &[Pixel],
+    references: &LazyCell<Vec<[f64; 2]>, impl FnOnce() -> Vec<[f64; 2]>>,
+) {
+    let pyramid = Pyramid::build(checker(), Content::Colour).expect("colour of any format");
+    let packed = PackedPyramid::new(&pyramid, &REPEAT.into());
+    let mut group = criterion.benchmark_group("mipmap/filter_packet");
+    group
+        .sample_size(15)
+        .warm_up_time(Duration::from_millis(200))
+        .measurement_time(Duration::from_secs(1))
+        .throughput(Throughput::Elements(pixels.len() as u64));
+    let packets: Vec<[[f32; 16]; 6]> = pixels.chunks(16).map(packet_of).collect();
+    for (name, filter) in packet_filters() {
+        let mut reported = false;
+        let read = || read_packets(&packed, &filter, &packets);
+        group.bench_function(BenchmarkId::from_parameter(&name), |b| {
+            if !reported {
+                reported = true;
+                let got = &read()[..pixels.len()];
+                print_errors(&format!("{name} in packets"), got, references);
+            }
+            b.iter(|| black_box(read()));
+        });
+    }
+    group.finish();
+}
+
+/// What a packet is read by.
+enum PacketFilter {
+    Sampler(SamplerState),
+    Elliptic(EwaTier),
+    Automatic(Tolerance),
+}
+
+fn packet_filters() -> Vec<(String, PacketFilter)> {
+    let sampled = states()
+        .into_iter()
+        .map(|(name, state)| (name, PacketFilter::Sampler(state)));
+    let tiers = EwaTier::ALL.into_iter().map(|tier| {
+        let name = format!("ewa_{tier:?}").to_lowercase();
+        (name, PacketFilter::Elliptic(tier))
+    });
+    let automatic = TOLERANCES.into_iter().map(|rmse| {
+        let tolerance = Tolerance::new(rmse).expect("above 0");
+        (
+            format!("automatic_{rmse}"),
+            PacketFilter::Automatic(tolerance),
+        )
+    });
+    sampled.chain(tiers).chain(automatic).collect()
+}
+
+/// s, t and their derivatives of up to sixteen pixels, the last one's in what is left.
+fn packet_of(pixels: &[Pixel]) -> [[f32; 16]; 6] {
+    let lane = |value: fn(&Footprint) -> f32| {
+        std::array::from_fn(|i| value(&pixels[i.min(pixels.len() - 1)].footprint))
+    };
+    [
+        lane(|f| narrowed(f.st.x)),
+        lane(|f| narrowed(f.st.y)),
+        lane(|f| f.dst_dx.x),
+        lane(|f| f.dst_dx.y),
+        lane(|f| f.dst_dy.x),
+        lane(|f| f.dst_dy.y),
+    ]
+}
+
+/// A coordinate less whole periods, as f32.
+#[expect(clippy::cast_possible_truncation, reason = "rounds to nearest")]
+fn narrowed(coordinate: f64) -> f32 {
+    (coordinate - coordinate.floor()) as f32
+}
+
+/// Red of every lane.
+fn read_packets(
+    packed: &PackedPyramid,
+    filter: &PacketFilter,
+    packets: &[[[f32; 16]; 6]],
+) -> Vec<f64> {
+    let mut red = Vec::with_capacity(16 * packets.len());
+    let mut taps = Taps::default();
+    dispatch!(Level::new(), simd => simd.vectorize(
+        #[inline(always)]
+        || {
+            for lanes in packets {
+                let [s, t, ds_dx, dt_dx, ds_dy, dt_dy] = lanes;
+                let at = PacketFootprint {
+                    s: f32x16::simd_from(simd, *s),
+                    t: f32x16::simd_from(simd, *t),
+                    ds_dx: f32x16::simd_from(simd, *ds_dx),
+                    dt_dx: f32x16::simd_from(simd, *dt_dx),
+                    ds_dy: f32x16::simd_from(simd, *ds_dy),
+                    dt_dy: f32x16::simd_from(simd, *dt_dy),
+                };
+                let [r, ..] = match filter {
+                    PacketFilter::Sampler(state) => {
+                        taps.find(simd, packed, state, &at);
+                        taps.sample(simd, packed)
+                    }
+                    PacketFilter::Elliptic(tier) => packet::ewa(simd, packed, *tier, &at),
+                    PacketFilter::Automatic(tolerance) => {
+                        let state = SamplerState::default();
+                        packet::automatic(simd, &mut taps, packed, &state, *tolerance, &at)
+                    }
+                };
+                red.extend(r.to_array().map(f64::from));
+            }
+        },
+    ));
+    red
 }
 
 fn print_errors(name: &str, got: &[f64], references: &[[f64; 2]]) {
@@ -154,7 +275,7 @@ fn lookups() -> Vec<(String, Lookup)> {
         let lookup = move |pixel: &Pixel| ewa(&pyramid, REPEAT, tier, &pixel.footprint);
         lookups.push((name, Box::new(lookup)));
     }
-    for rmse in [0.05, 0.02, 0.01, 0.005] {
+    for rmse in TOLERANCES {
         let (pyramid, state) = (pyramid.clone(), SamplerState::default());
         let tolerance = Tolerance::new(rmse).expect("above 0");
         let lookup = move |pixel: &Pixel| automatic(&pyramid, &state, tolerance, &pixel.footprint);
@@ -204,6 +325,11 @@ fn states() -> Vec<(String, SamplerState)> {
         ..SamplerState::default()
     };
     states.push(("aniso16_gaussian".to_owned(), gaussian));
+    let mitchell = Filter::Bicubic(Cubic::Mitchell);
+    for n in [1u8, 16] {
+        let bicubic = state(mitchell, MipFilter::Linear, n.into());
+        states.push((format!("mitchell_aniso{n}"), bicubic));
+    }
     states
 }
 

@@ -40,7 +40,8 @@
 //! [`ProbeWeights::Gaussian`] makes it a Gaussian. [`stochastic`] reads one texel of the same, right on average.
 //!
 //! # Sixteen at once: [`packet`]
-//! [`packet::Taps`] are [`sample`] at sixteen footprints, from a [`packet::PackedPyramid`].
+//! [`packet::Taps`] are [`sample`] at sixteen footprints, from a [`packet::PackedPyramid`];
+//! [`packet::ewa()`] is [`ewa()`], [`packet::automatic()`] is [`automatic()`].
 //!
 //! # A Gaussian pixel: [`ewa`]
 //! Every texel under the footprint's ellipse, weighted by a Gaussian, in three tiers ([`EwaTier`]).
@@ -73,6 +74,7 @@
 //! | trilinear lookups | one of those that ±8e-6 of λ can give | `tests/properties/verifier.rs` |
 //! | [`sample`] of 8-bit texels in integers against the exact path | [`sampler::BILINEAR_FIXED_MAX_ERROR`] + 2e-5 | `tests/properties/filtering.rs` |
 //! | [`packet::Taps::sample`] against [`sample`] | 1e-3 of the texels' range, the same bits everywhere | `tests/properties/packet.rs` |
+//! | [`packet::ewa()`], [`packet::automatic()`] against [`ewa()`], [`automatic()`] | the same | `tests/properties/packet_ewa.rs`, `packet_automatic.rs` |
 //! | [`RipMap`] against its f64 kernel | 1e-5 of the texels' range | `tests/properties/rip_map.rs` |
 //! | [`SummedArea`] against the integral | 1e-6 of the texels' range | `tests/properties/summed_area.rs` |
 //! | continuity over derivatives | ≤ 1/255 per 1e-3 step | `tests/properties/filtering.rs` |
