@@ -11,6 +11,8 @@
 
 use fearless_simd::{Simd, f32x16, prelude::*};
 
+use glam::DVec3;
+
 use crate::packet::F64x16;
 use crate::unrolled::two;
 
@@ -60,9 +62,37 @@ impl CoordinatePlanes {
     /// All finite, 1/w > 0. Nothing is refused: what is not finite or has no area comes out as NaN or infinity.
     #[must_use]
     pub fn new(edges: &ScreenEdges, inv_w: [f64; 3], st: [[f64; 2]; 3]) -> Self {
-        // A power of two that brings D near 1, so that derivatives fit f32 whatever the size and the distance.
         let size =
             edges.origin.iter().sum::<f64>() * inv_w.iter().fold(0.0, |a, &b| f64::max(a, b));
+        Self::scaled(edges, inv_w, st, size)
+    }
+
+    /// Planes from corners in homogeneous coordinates, (x·w, y·w, w) with x and y in pixels from the origin, and their
+    /// (s,t): of a triangle that was neither clipped nor snapped to a grid, wherever its corners lie, also behind the
+    /// viewer.
+    ///
+    /// All finite. Nothing is refused: what has no area comes out as NaN or infinity.
+    ///
+    /// # Source
+    /// Olano and Greer 1997, "Triangle Scan Conversion using 2D Homogeneous Coordinates".
+    #[must_use]
+    pub fn from_homogeneous(corners: [DVec3; 3], st: [[f64; 2]; 3]) -> Self {
+        // Each edge's function over w, times the determinant, which cancels.
+        let edges = [0, 1, 2].map(|k| corners[(k + 1) % 3].cross(corners[(k + 2) % 3]));
+        let determinant = corners[0].dot(edges[0]);
+        let farthest = corners.map(|corner| corner.z.abs());
+        let farthest = farthest.into_iter().fold(0.0, f64::max);
+        let edges = ScreenEdges {
+            origin: edges.map(|edge| edge.z),
+            dx: edges.map(|edge| edge.x),
+            dy: edges.map(|edge| edge.y),
+        };
+        Self::scaled(&edges, [1.0; 3], st, determinant / farthest)
+    }
+
+    /// `size`: about what D is.
+    fn scaled(edges: &ScreenEdges, inv_w: [f64; 3], st: [[f64; 2]; 3], size: f64) -> Self {
+        // A power of two that brings D near 1, so that derivatives fit f32 whatever the size and the distance.
         let scale = power_of_two_near(size).recip();
         let plane = |f: [f64; 3]| {
             let sum = |e: [f64; 3]| {

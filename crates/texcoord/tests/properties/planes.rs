@@ -76,4 +76,39 @@ proptest! {
             }
         }
     }
+
+    /// Corners anywhere about a viewer who sees some point of the triangle's plane: the point that a pixel's ray meets
+    /// has the weights that solve for it.
+    #[test]
+    fn homogeneous_corners_may_lie_behind_the_viewer(
+        corners in proptest::array::uniform3((-900.0..900.0f64, -900.0..900.0f64, -20.0..20.0f64)),
+        st in corner_st(), x in 0.0..40.0f64, y in 0.0..40.0f64,
+    ) {
+        let corners = corners.map(|(x, y, w)| DVec3::new(x * w, y * w, w));
+        let st = st.map(|at| at.as_dvec2().to_array());
+        let planes = CoordinatePlanes::from_homogeneous(corners, st);
+        let (found, _) = dispatch!(Level::new(), simd => run(simd, &planes, [x, y]));
+        for lane in 0..LANES {
+            // Weights b with Σ bᵢ·cornerᵢ = λ·(x, y, 1), by Cramer's rule, made to add up to 1.
+            let pixel = DVec3::new(x + lane as f64, y, 1.0);
+            let volume = |k: usize| {
+                let mut columns = corners;
+                columns[k] = pixel;
+                columns[0].dot(columns[1].cross(columns[2]))
+            };
+            let parts = [0, 1, 2].map(volume);
+            let sum: f64 = parts.iter().sum();
+            let spread = parts.iter().fold(0.0f64, |all, part| all.max(part.abs())) / sum.abs();
+            // A ray along the plane meets it nowhere.
+            if spread.is_nan() || spread > 1e3 {
+                continue;
+            }
+            for axis in 0..2 {
+                let size = st.iter().fold(1.0f64, |size, at| size.max(at[axis].abs()));
+                let wanted: f64 = (0..3).map(|k| parts[k] / sum * st[k][axis]).sum();
+                let error = (found[axis][lane] - wanted).abs();
+                prop_assert!(error <= 1e-7 * spread * size, "{lane}: {error:e} of {wanted}");
+            }
+        }
+    }
 }

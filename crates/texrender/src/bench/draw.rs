@@ -250,7 +250,7 @@ fn project_block<S: Simd>(
 }
 
 /// The clip-space position of one vertex: the steps of [`project_block`].
-fn clip_position(scene: &Scene, instance: [f32; 3], vertex: usize) -> DVec4 {
+pub(super) fn clip_position(scene: &Scene, instance: [f32; 3], vertex: usize) -> DVec4 {
     let world =
         [0, 1, 2].map(|axis| f64::from(scene.mesh.positions[axis][vertex] + instance[axis]));
     let matrix = scene.world_to_clip.map(|column| column.map(f64::from));

@@ -1,7 +1,7 @@
 //! The pixels of a tile, 16 at a time, whatever triangles they see.
 
 use fearless_simd::{Simd, f32x4, f32x16, mask32x16, prelude::*, u32x16};
-use glam::UVec2;
+use glam::{DVec3, UVec2};
 use mipmap::SamplerState;
 use mipmap::packet::{PackedPyramid, PacketFootprint, Taps};
 use raster::{Frame, PacketTriangles, SurfacePacket, VisibilityTile};
@@ -9,9 +9,10 @@ use texcoord::packet::{F64x16, LANES, PacketWeights, columns};
 use texcoord::planes::{CoordinatePlanes, PacketCoordinates};
 use texcoord::unrolled::{four, three, two};
 
+use super::draw::clip_position;
 use super::light::{Vectors, codes, lit, mapped_normal, normalized};
 use super::mixed::{Mixed, Single};
-use super::picture::CLEAR;
+use super::picture::{CLEAR, HEIGHT, WIDTH};
 use super::scene::{Scene, Shader};
 
 /// Strength of the highlight, and what a texture's code is worth.
@@ -121,21 +122,24 @@ impl TileShader<'_> {
         taps.find(simd, self.textures[0], self.state, &footprint);
     }
 
-    /// Texture coordinates over a triangle, from the first pixel of a tile.
+    /// Texture coordinates over a triangle, from the first pixel of a tile: by its corners in clip space, which have not
+    /// been snapped to the grid of the screen.
     #[inline(never)]
     fn planes(&self, owner: u32, corner: UVec2) -> CoordinatePlanes {
-        let surface = self.frame.surface(owner);
-        let rows = surface
-            .vertices
-            .map(|v| self.scene.mesh.rows[0][self.vertex(v)]);
-        let mut st = rows.map(|row| [f64::from(row[0]), f64::from(row[1])]);
-        if let Some(corners) = surface.piece {
-            st = corners.map(|at| {
-                let at = at.to_array();
-                [0, 1].map(|axis| (0..3).map(|k| at[k] * st[k][axis]).sum())
-            });
-        }
-        CoordinatePlanes::new(&surface.edges_at(corner), surface.inv_w, st)
+        let vertices = self.frame.surface(owner).vertices;
+        let instance = self.scene.instances[(vertices[0] >> self.vertex_bits) as usize];
+        let [width, height] = [WIDTH, HEIGHT].map(f64::from);
+        let first = corner.as_dvec2() + 0.5;
+        // Pixels from the first one's centre, times w.
+        let corners = vertices.map(|v| {
+            let clip = clip_position(self.scene, instance, self.vertex(v));
+            let x = (clip.w + clip.x) * (0.5 * width) - first.x * clip.w;
+            let y = (clip.w - clip.y) * (0.5 * height) - first.y * clip.w;
+            DVec3::new(x, y, clip.w)
+        });
+        let rows = vertices.map(|v| self.scene.mesh.rows[0][self.vertex(v)]);
+        let st = rows.map(|row| [f64::from(row[0]), f64::from(row[1])]);
+        CoordinatePlanes::from_homogeneous(corners, st)
     }
 
     /// Packets of pixels, each of a triangle of its own, by a shader that reads `ROWS` rows of attributes.
