@@ -20,8 +20,8 @@ use crate::settings::Background;
 /// Quality of JPEG files, 1..=100.
 const JPEG_QUALITY: u8 = 92;
 
-/// Row filter of PNG files: of rendered pictures it makes files as small as choosing one for each row
-/// does, in a half to a tenth of the time.
+/// Row filter of PNG files: of rendered pictures it makes files within 2 % of those whose rows choose one
+/// each, in two thirds to nine tenths of the time.
 pub(super) const PNG_FILTER: FilterType = FilterType::Paeth;
 
 /// A format of picture files.
