@@ -88,7 +88,7 @@ proptest! {
         let st = st.map(|at| at.as_dvec2().to_array());
         let planes = CoordinatePlanes::from_homogeneous(corners, st);
         let (found, _) = dispatch!(Level::new(), simd => run(simd, &planes, [x, y]));
-        for lane in 0..LANES {
+        for (lane, [found_s, found_t]) in found[0].into_iter().zip(found[1]).map(<[f64; 2]>::from).enumerate() {
             // Weights b with Σ bᵢ·cornerᵢ = λ·(x, y, 1), by Cramer's rule, made to add up to 1.
             let pixel = DVec3::new(x + lane as f64, y, 1.0);
             let volume = |k: usize| {
@@ -103,10 +103,10 @@ proptest! {
             if spread.is_nan() || spread > 1e3 {
                 continue;
             }
-            for axis in 0..2 {
+            for (axis, found) in [found_s, found_t].into_iter().enumerate() {
                 let size = st.iter().fold(1.0f64, |size, at| size.max(at[axis].abs()));
                 let wanted: f64 = (0..3).map(|k| parts[k] / sum * st[k][axis]).sum();
-                let error = (found[axis][lane] - wanted).abs();
+                let error = (found - wanted).abs();
                 prop_assert!(error <= 1e-7 * spread * size, "{lane}: {error:e} of {wanted}");
             }
         }
