@@ -16,7 +16,7 @@ use texcoord::unrolled::{four, three};
 
 use super::picture::{HEIGHT, Picture, WIDTH};
 use super::scene::{Configuration, Scene};
-use super::shade::{RowTaps, TileShader};
+use super::shade::{ShadeScratch, TileShader};
 use super::textures::Textures;
 use crate::error::Error;
 
@@ -41,7 +41,7 @@ pub struct Renderer {
 #[derive(Debug)]
 struct Scratch {
     tile: VisibilityTile,
-    taps: RowTaps,
+    shade: ShadeScratch,
 }
 
 /// A tile and the rows of the picture that it covers.
@@ -61,7 +61,7 @@ impl Renderer {
         let grid = TileGrid::new(viewport, TILE).expect("a constant");
         let scratch = || Scratch {
             tile: VisibilityTile::with_level(&pattern, level),
-            taps: RowTaps::default(),
+            shade: ShadeScratch::default(),
         };
         Self {
             level,
@@ -179,11 +179,11 @@ fn shade(level: Level, shader: &TileShader<'_>, tiles: &[Mutex<Scratch>], pictur
         let Ok(mut scratch) = tiles[thread].lock() else {
             return;
         };
-        let Scratch { tile, taps } = &mut *scratch;
+        let Scratch { tile, shade } = &mut *scratch;
         while let Some(mut job) = next() {
             tile.reset(frame.grid().rect(job.tile));
             frame.draw_tile(job.tile, tile);
-            dispatch!(level, simd => shader.tile(simd, tile, &mut job.rows, taps));
+            dispatch!(level, simd => shader.tile(simd, tile, &mut job.rows, shade));
         }
     };
     rayon::broadcast(|context| work(context.index()));

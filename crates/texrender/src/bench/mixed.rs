@@ -8,7 +8,7 @@ use texcoord::packet::LANES;
 pub(super) struct Mixed<'a> {
     owners: Owners<'a>,
     /// Column of the first pixel and row.
-    pub(super) places: Vec<[usize; 2]>,
+    pub(super) places: &'a mut Vec<[usize; 2]>,
 }
 
 /// Who owns the 16 pixels of a packet.
@@ -19,11 +19,10 @@ pub(super) enum Single {
 }
 
 impl<'a> Mixed<'a> {
-    pub(super) fn of(owners: Owners<'a>) -> Self {
-        Self {
-            owners,
-            places: Vec::new(),
-        }
+    /// None yet; `places`: memory to use.
+    pub(super) fn of(owners: Owners<'a>, places: &'a mut Vec<[usize; 2]>) -> Self {
+        places.clear();
+        Self { owners, places }
     }
 
     /// Who owns a packet's pixels.

@@ -55,8 +55,14 @@ struct Corners<S: Simd, const ROWS: usize> {
 /// Packets of a tile's row.
 const PACKETS: usize = 4;
 
-/// Memory of a thread: what the packets of a row read of their textures.
-pub(super) type RowTaps = [Taps; PACKETS];
+/// Memory of a thread.
+#[derive(Debug, Default)]
+pub(super) struct ShadeScratch {
+    /// What the packets of a row read of their textures.
+    taps: [Taps; PACKETS],
+    /// Where a tile's packets of several triangles are.
+    mixed: Vec<[usize; 2]>,
+}
 
 impl TileShader<'_> {
     /// Writes the pixels of a tile to the rows of the picture that it covers.
@@ -66,11 +72,12 @@ impl TileShader<'_> {
         simd: S,
         visibility: &VisibilityTile,
         rows: &mut [&mut [u32]],
-        taps: &mut RowTaps,
+        scratch: &mut ShadeScratch,
     ) {
         let corner = visibility.rect().min;
         let mut last = None;
-        let mut mixed = Mixed::of(visibility.owners());
+        let ShadeScratch { taps, mixed } = scratch;
+        let mixed = Mixed::of(visibility.owners(), mixed);
         for (y, row) in rows.iter_mut().enumerate() {
             // The taps of all packets before the texels of any: neither waits for the other.
             let mut found = [false; PACKETS];
