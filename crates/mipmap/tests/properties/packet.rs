@@ -7,7 +7,7 @@ use mipmap::{Content, Footprint, LodRule, MipFilter, Pyramid, SamplerState, samp
 use proptest::prelude::*;
 use sampler::{AddressMode, Addressing, Cubic, Filter, Precision, Texels, Transfer};
 
-use crate::strategies::{byte_texture, float_texture, footprint, made, state, tame_footprint};
+use crate::strategies::{ODD, byte_texture, float_texture, footprint, made, state, tame_footprint};
 
 /// Sixteen lookups, lane by lane.
 pub(crate) type Colours = [[f32; 16]; 4];
@@ -201,6 +201,29 @@ proptest! {
         }
     }
 
+    /// Taps that were found for a texture read another one of its shape as if they had been found for that.
+    #[test]
+    fn textures_of_a_shape_share_taps(
+        size in crate::strategies::size(), seeds in [any::<u8>(), any::<u8>()], state in any_state(),
+        footprints in many(prop_oneof![footprint(), tame_footprint()]),
+    ) {
+        let packed = [(Transfer::Linear, seeds[0]), (Transfer::Srgb, seeds[1])].map(|(transfer, seed)| {
+            let codes = (0..size.x * size.y * 4).map(|k| k.to_le_bytes()[0].wrapping_mul(89) ^ seed);
+            let texture = made(size, 4, transfer, Texels::U8(codes.collect()));
+            PackedPyramid::new(&Pyramid::build(texture, Content::Colour).unwrap(), &state.address)
+        });
+        prop_assert!(packed[0].is_alike(&packed[1]));
+        let lanes = lanes_of(&footprints);
+        let [shared, own] = dispatch!(Level::new(), simd => {
+            packed.each_ref().map(|found_for| {
+                let mut taps = Taps::default();
+                taps.find(simd, found_for, &state, &packet_of(simd, &lanes));
+                taps.sample(simd, &packed[1]).map(|c| c.to_array().map(f32::to_bits))
+            })
+        });
+        prop_assert_eq!(shared, own);
+    }
+
     /// A constant comes back, to f32's rounding, from every format, line of probes and pair of levels.
     #[test]
     fn constants_survive(
@@ -288,16 +311,6 @@ fn what_is_not_a_number_is_defined() {
         Texels::U8((0..45).collect()),
     );
     let pyramid = Pyramid::build(texture, Content::Data).unwrap();
-    let odd = [
-        f32::NAN,
-        f32::INFINITY,
-        f32::NEG_INFINITY,
-        3e38,
-        -3e38,
-        1e-45,
-        0.0,
-        -0.0,
-    ];
     for mode in [
         AddressMode::Repeat,
         AddressMode::MirrorRepeat,
@@ -312,7 +325,7 @@ fn what_is_not_a_number_is_defined() {
                 ..SamplerState::default()
             };
             let packed = PackedPyramid::new(&pyramid, &state.address);
-            for (place, slope) in odd.iter().flat_map(|&p| odd.map(|s| (p, s))) {
+            for (place, slope) in ODD.iter().flat_map(|&p| ODD.map(|s| (p, s))) {
                 let lanes: Lanes = [
                     [place; 16],
                     [0.3; 16],

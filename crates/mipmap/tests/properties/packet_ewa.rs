@@ -10,7 +10,8 @@ use sampler::{AddressMode, Addressing, Texels, Transfer};
 use crate::oracle;
 use crate::packet::{Colours, Lanes, lanes_of, levels, many, packet_of};
 use crate::strategies::{
-    byte_texture, checkered, float_texture, footprint, made, random_footprint, tame_footprint,
+    ODD, byte_texture, checkered, float_texture, footprint, made, mode, random_footprint,
+    tame_footprint,
 };
 
 fn colours(level: Level, packed: &PackedPyramid, tier: EwaTier, lanes: &Lanes) -> Colours {
@@ -21,16 +22,6 @@ fn colours(level: Level, packed: &PackedPyramid, tier: EwaTier, lanes: &Lanes) -
 
 fn tier() -> impl Strategy<Value = EwaTier> {
     prop::sample::select(EwaTier::ALL.to_vec())
-}
-
-fn mode() -> impl Strategy<Value = AddressMode> {
-    prop::sample::select(vec![
-        AddressMode::Repeat,
-        AddressMode::MirrorRepeat,
-        AddressMode::ClampToEdge,
-        AddressMode::MirrorClampToEdge,
-        AddressMode::ClampToBorder,
-    ])
 }
 
 fn address() -> impl Strategy<Value = Addressing<2>> {
@@ -158,19 +149,9 @@ fn what_is_not_a_number_is_defined() {
     let texels = Texels::U8((0..45).collect());
     let texture = made(UVec2::new(5, 3), 3, Transfer::Linear, texels);
     let pyramid = Pyramid::build(texture, Content::Data).unwrap();
-    let odd = [
-        f32::NAN,
-        f32::INFINITY,
-        f32::NEG_INFINITY,
-        3e38,
-        -3e38,
-        1e-45,
-        0.0,
-        -0.0,
-    ];
     for mode in [AddressMode::MirrorRepeat, AddressMode::ClampToBorder] {
         let packed = PackedPyramid::new(&pyramid, &[mode; 2].into());
-        for (place, slope) in odd.iter().flat_map(|&p| odd.map(|s| (p, s))) {
+        for (place, slope) in ODD.iter().flat_map(|&p| ODD.map(|s| (p, s))) {
             let lanes: Lanes = [
                 [place; 16],
                 [0.3; 16],

@@ -99,16 +99,29 @@ pub(crate) fn tame_footprint() -> impl Strategy<Value = Footprint> {
         })
 }
 
+pub(crate) fn mode() -> impl Strategy<Value = AddressMode> {
+    prop::sample::select(vec![
+        AddressMode::Repeat,
+        AddressMode::MirrorRepeat,
+        AddressMode::ClampToEdge,
+        AddressMode::MirrorClampToEdge,
+        AddressMode::ClampToBorder,
+    ])
+}
+
+/// Numbers that places and derivatives should not be, and are.
+pub(crate) const ODD: [f32; 8] = [
+    f32::NAN,
+    f32::INFINITY,
+    f32::NEG_INFINITY,
+    3e38,
+    -3e38,
+    1e-45,
+    0.0,
+    -0.0,
+];
+
 pub(crate) fn state() -> impl Strategy<Value = SamplerState> {
-    let mode = || {
-        prop::sample::select(vec![
-            AddressMode::Repeat,
-            AddressMode::MirrorRepeat,
-            AddressMode::ClampToEdge,
-            AddressMode::MirrorClampToEdge,
-            AddressMode::ClampToBorder,
-        ])
-    };
     let filter = || prop::sample::select(vec![Filter::Nearest, Filter::Bilinear]);
     let mip = prop::sample::select(vec![MipFilter::None, MipFilter::Nearest, MipFilter::Linear]);
     let anisotropy = prop_oneof![

@@ -6,19 +6,9 @@ use proptest::prelude::*;
 use sampler::{AddressMode, Addressing, Texels, Texture, Transfer};
 
 use crate::oracle;
-use crate::strategies::{Noise, byte_texture, float_texture, footprint, made};
+use crate::strategies::{Noise, byte_texture, float_texture, footprint, made, mode};
 
 const BORDER: Vec4 = Vec4::new(0.9, 0.1, 0.4, 0.7);
-
-fn mode() -> impl Strategy<Value = AddressMode> {
-    prop::sample::select(vec![
-        AddressMode::Repeat,
-        AddressMode::MirrorRepeat,
-        AddressMode::ClampToEdge,
-        AddressMode::MirrorClampToEdge,
-        AddressMode::ClampToBorder,
-    ])
-}
 
 /// Index on a stored axis, by walking: one texel at a time from inside.
 fn folded(mode: AddressMode, index: i64, n: i64) -> Option<u32> {

@@ -8,7 +8,7 @@ use sampler::packet::{
 };
 use sampler::{AddressMode, Addressing, Texels, Texture, Transfer};
 
-const MODES: [AddressMode; 5] = [
+pub(crate) const MODES: [AddressMode; 5] = [
     AddressMode::Repeat,
     AddressMode::MirrorRepeat,
     AddressMode::ClampToEdge,
@@ -44,6 +44,30 @@ fn texel(sheet: &Sheet, column: u32, row: u32) -> Vec4 {
             )
         }
         SheetTexels::Floats(colours) => Vec4::from_array(colours[index]),
+    }
+}
+
+/// Texels in rows of [`STRIDE`], as sheets hold them: 8-bit codes, 16-bit ones and floats.
+pub(crate) struct Kinds {
+    pub(crate) pairs: [u64; 32],
+    pub(crate) wide: [u64; 32],
+    pub(crate) floats: [[f32; 4]; 32],
+}
+
+pub(crate) const STRIDE: usize = 4;
+
+impl Kinds {
+    pub(crate) fn of(codes: [u32; 32]) -> Self {
+        Self {
+            pairs: std::array::from_fn(|k| {
+                u64::from(codes[k]) | u64::from(codes[(k + STRIDE) % 32]) << 32
+            }),
+            wide: codes.map(|code| {
+                let [r, g, b, a] = code.to_le_bytes().map(|c| (u64::from(c) * 257) ^ 0x8000);
+                r | g << 16 | b << 32 | a << 48
+            }),
+            floats: codes.map(|code| code.to_le_bytes().map(|c| f32::from(c) / 255.0)),
+        }
     }
 }
 
@@ -83,15 +107,7 @@ proptest! {
         shares in proptest::array::uniform16((0..=ONE, 0..=ONE, 1..=ONE)),
         offsets in proptest::array::uniform16(0u32..26),
     ) {
-        const STRIDE: usize = 4;
-        let wide = codes.map(|code| {
-            let [r, g, b, a] = code.to_le_bytes().map(|c| (u64::from(c) * 257) ^ 0x8000);
-            r | g << 16 | b << 32 | a << 48
-        });
-        let pairs = std::array::from_fn::<u64, 32, _>(|k| {
-            u64::from(codes[k]) | u64::from(codes[(k + STRIDE) % 32]) << 32
-        });
-        let floats = codes.map(|code| code.to_le_bytes().map(|c| f32::from(c) / 255.0));
+        let Kinds { pairs, wide, floats } = Kinds::of(codes);
         let lane = |part: fn((u32, u32, u32)) -> u32| shares.map(part);
         let (right, lower, weight) = (lane(|s| s.0), lane(|s| s.1), lane(|s| s.2));
         let found: [[[f32; 16]; 4]; 3] = dispatch!(Level::new(), simd => {

@@ -2,16 +2,9 @@
 
 use fearless_simd::{Level, dispatch, f32x16, i32x16, prelude::*, u32x16};
 use proptest::prelude::*;
-use sampler::AddressMode;
 use sampler::packet::{BlockWeights, ONE, Span, Sums, Sums8, Sums16, SumsFloat, Tap, nearby};
 
-const MODES: [AddressMode; 5] = [
-    AddressMode::Repeat,
-    AddressMode::MirrorRepeat,
-    AddressMode::ClampToEdge,
-    AddressMode::MirrorClampToEdge,
-    AddressMode::ClampToBorder,
-];
+use crate::packet::{Kinds, MODES, STRIDE};
 
 fn weights() -> impl Strategy<Value = [i32; 16]> {
     let one = ONE.cast_signed();
@@ -26,16 +19,8 @@ proptest! {
         weights in proptest::array::uniform4(weights()),
         offsets in proptest::array::uniform16(0u32..26),
     ) {
-        const STRIDE: usize = 4;
-        let wide = codes.map(|code| {
-            let [r, g, b, a] = code.to_le_bytes().map(|c| (u64::from(c) * 257) ^ 0x8000);
-            r | g << 16 | b << 32 | a << 48
-        });
-        let pairs = std::array::from_fn::<u64, 32, _>(|k| {
-            u64::from(codes[k]) | u64::from(codes[(k + STRIDE) % 32]) << 32
-        });
+        let Kinds { pairs, wide, floats } = Kinds::of(codes);
         let totals = std::array::from_fn::<i32, 16, _>(|lane| weights.iter().map(|w| w[lane]).sum());
-        let floats = codes.map(|code| code.to_le_bytes().map(|c| f32::from(c) / 255.0));
         let found: [[[f32; 16]; 4]; 3] = dispatch!(Level::new(), simd => {
             let [a, b, c, d] = weights.map(|weight| i32x16::simd_from(simd, weight));
             let block = BlockWeights { upper: [a, b], lower: [c, d] };
