@@ -10,7 +10,8 @@ use glam::{DVec2, DVec4, Vec4};
 use crate::error::Error;
 use crate::footprint::{AxisLengths, Footprint};
 use crate::pyramid::Pyramid;
-use crate::sample::{MAX_ANISOTROPY, SamplerState, sample};
+use crate::sample::sample;
+use crate::sampler_state::{MAX_ANISOTROPY, SamplerState};
 
 /// The greatest error that [`automatic`] may make: an RMSE against a box pixel, of texels in 0..=1.
 #[derive(Debug, Clone, Copy, PartialEq, PartialOrd)]

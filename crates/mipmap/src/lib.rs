@@ -92,6 +92,7 @@
 
 mod automatic;
 mod axis_box;
+mod blend;
 mod error;
 mod ewa;
 mod footprint;
@@ -102,6 +103,7 @@ pub mod pyramid;
 mod rip_map;
 mod runs;
 mod sample;
+mod sampler_state;
 pub mod solid_angle;
 mod stochastic;
 mod summed_area;
@@ -114,8 +116,7 @@ pub use lod::{LOD_MAX_ABS_ERROR, LodRule, lod};
 pub use probes::ProbeWeights;
 pub use pyramid::{Content, Pyramid};
 pub use rip_map::RipMap;
-pub use sample::{
-    LEAST_MIP_BAND, MAX_ANISOTROPY, MipFilter, SamplerState, sample, sample_with_lod,
-};
+pub use sample::{sample, sample_with_lod};
+pub use sampler_state::{LEAST_MIP_BAND, MAX_ANISOTROPY, MipFilter, SamplerState};
 pub use stochastic::{blue_noise, stochastic};
 pub use summed_area::SummedArea;

@@ -1,111 +1,12 @@
-use glam::{DVec2, DVec4, UVec2, Vec4};
-use sampler::{AddressMode, Addressing, Filter, FixedMean, Precision, Texels};
+use glam::{DVec2, UVec2, Vec4};
+use sampler::{AddressMode, Filter, FixedMean, Precision, Texels};
 
+use crate::blend::Levels;
 use crate::footprint::{AxisLengths, Footprint};
 use crate::lod::{LodRule, quick_log2};
-use crate::probes::{ProbeWeights, Probes};
+use crate::probes::Probes;
 use crate::pyramid::Pyramid;
-use crate::stochastic::picks_first;
-
-/// The greatest anisotropy that a lookup follows, whatever its state asks for.
-pub const MAX_ANISOTROPY: f32 = 64.0;
-
-/// The least [`SamplerState::mip_band`].
-pub const LEAST_MIP_BAND: f32 = 1.0 / 64.0;
-
-/// How the levels of a pyramid are used when a texture is minified.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
-pub enum MipFilter {
-    /// Level 0 only.
-    None,
-    /// The level nearest to λ: ⌈λ + ½⌉ − 1.
-    Nearest,
-    /// The two levels around λ, weighted linearly; with [`Filter::Bilinear`], trilinear filtering.
-    #[default]
-    #[doc(alias = "trilinear")]
-    Linear,
-}
-
-/// How a pyramid is read. The default is the best this crate offers: trilinear, 16 times anisotropic, repeating.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct SamplerState {
-    /// Address modes of s and of t, and the border's colour.
-    pub address: Addressing<2>,
-    /// How exactly 8-bit texels are filtered within a level.
-    pub precision: Precision,
-    /// Filter where a texel covers a pixel or more (λ ≤ 0).
-    pub magnify: Filter,
-    /// Filter within a level where a pixel covers more than a texel (λ > 0).
-    pub minify: Filter,
-    /// How levels are chosen where λ > 0.
-    pub mip: MipFilter,
-    /// The part of a level's range over which [`MipFilter::Linear`] blends it with the next, about the middle: 1 is
-    /// trilinear filtering; less reads one level alone where λ is near a whole number, a quarter of the lookups for
-    /// ¾, at little error beside that of the levels themselves. Below [`LEAST_MIP_BAND`] counts as that, above 1 and
-    /// NaN as 1.
-    pub mip_band: f32,
-    /// Which lengths of the footprint count as its axes.
-    pub lod_rule: LodRule,
-    /// Added to λ: negative is sharper. NaN counts as 0.
-    pub lod_bias: f32,
-    /// Least and greatest λ, after the bias. The least wins over a smaller greatest; NaN is no limit.
-    pub lod_range: [f32; 2],
-    /// Greatest aspect of a footprint that is followed by a line of probes; 1 turns it off. Less than 1 and NaN
-    /// count as 1, more than [`MAX_ANISOTROPY`] as that.
-    pub max_anisotropy: f32,
-    /// How the probes of that line are weighted, and so the pixel kernel it stands for.
-    pub probe_weights: ProbeWeights,
-}
-
-impl SamplerState {
-    /// λ with bias and limits. Negative λ counts until the bias is added; NaN never passes.
-    #[inline]
-    fn limited(&self, lambda: f32) -> f32 {
-        let biased = if self.lod_bias.is_nan() {
-            lambda
-        } else {
-            lambda + self.lod_bias
-        };
-        // `min` and `max` ignore NaN; ∞ − ∞ is the coarsest level.
-        let biased = if biased.is_nan() {
-            f32::INFINITY
-        } else {
-            biased
-        };
-        biased.min(self.lod_range[1]).max(self.lod_range[0])
-    }
-
-    /// 1 over the band in which levels are blended: 1 and more.
-    #[inline]
-    pub(crate) fn blend_slope(&self) -> f32 {
-        // `min` turns NaN into 1.
-        1.0 / f32::min(self.mip_band, 1.0).max(LEAST_MIP_BAND)
-    }
-
-    /// Whether λ ≤ 0 before bias and limits is λ ≤ 0 after them.
-    #[inline]
-    fn keeps_magnification(&self) -> bool {
-        !(self.lod_bias > 0.0 || self.lod_range[0] > 0.0)
-    }
-}
-
-impl Default for SamplerState {
-    fn default() -> Self {
-        Self {
-            address: Addressing::default(),
-            precision: Precision::Exact,
-            magnify: Filter::Bilinear,
-            minify: Filter::Bilinear,
-            mip: MipFilter::Linear,
-            mip_band: 1.0,
-            lod_rule: LodRule::Exact,
-            lod_bias: 0.0,
-            lod_range: [f32::NEG_INFINITY, f32::INFINITY],
-            max_anisotropy: 16.0,
-            probe_weights: ProbeWeights::Equal,
-        }
-    }
-}
+use crate::sampler_state::{MAX_ANISOTROPY, MipFilter, SamplerState};
 
 /// The colour under `footprint`.
 ///
@@ -118,7 +19,7 @@ impl Default for SamplerState {
 /// ```
 ///
 /// The footprint is covered by a line of probes a distance major/η apart along the major axis, weighted as
-/// [`ProbeWeights`] says (by default as a box of length `major`); every probe filters at λ. For η = 1 that is one
+/// [`crate::ProbeWeights`] says (by default as a box of length `major`); every probe filters at λ. For η = 1 that is one
 /// probe, as for footprints up to 1.2 times as long as wide, where more would cost and err more. The last term of η keeps probes at least half a texel apart (a texel, where magnification is
 /// [`Filter::Nearest`], so that no edge of a texel is softened). Where max_anisotropy cuts the aspect, λ rises; by
 /// [`LodRule::Exact`] up to 0.4 less than the longer side asks for: a square as wide as a long footprint is too wide
@@ -127,7 +28,7 @@ impl Default for SamplerState {
 ///
 /// Target pixel kernel: of one lookup of level 0, the point; of one probe, a square along the texture's axes, as wide
 /// as the footprint is long; of a line of probes, the rectangle that the footprint's two axes span, or by
-/// [`ProbeWeights::Gaussian`] the Gaussian of σ = ½ pixel through the footprint.
+/// [`crate::ProbeWeights::Gaussian`] the Gaussian of σ = ½ pixel through the footprint.
 ///
 /// Where λ reaches a last level of one texel that is not bordered, that texel is fetched once, whatever η.
 ///
@@ -360,148 +261,4 @@ fn lookup(pyramid: &Pyramid, state: &SamplerState, filter: Filter, level: u32, s
         state.precision,
         st,
     )
-}
-
-/// One stored level, or two neighbours and the weight of the coarser.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Levels {
-    fine: u32,
-    fraction: f32,
-}
-
-impl Levels {
-    fn one(level: u32) -> Self {
-        Self {
-            fine: level,
-            fraction: 0.0,
-        }
-    }
-
-    /// λ may be infinite, not NaN. `count` ≥ 1.
-    #[allow(
-        clippy::cast_possible_truncation,
-        reason = "0 ≤ lod < count, and truncation is the floor of it"
-    )]
-    fn at(lambda: f32, count: u32, state: &SamplerState) -> Self {
-        let lod = lambda.max(0.0).min((count - 1) as f32);
-        match state.mip {
-            MipFilter::None => Self::one(0),
-            MipFilter::Nearest => {
-                // ⌈x⌉ − 1 for x = λ + ½ > 0: the floor, less one on the integers.
-                let above = lod + 0.5;
-                let floor = above as u32;
-                Self::one(floor - u32::from(floor as f32 == above))
-            }
-            MipFilter::Linear => {
-                let fine = lod as u32;
-                let slope = state.blend_slope();
-                let fraction = (lod - fine as f32 - 0.5) * slope + 0.5;
-                if slope == 1.0 {
-                    Self {
-                        fine,
-                        fraction: lod - fine as f32,
-                    }
-                } else if fraction >= 1.0 {
-                    Self::one(fine + 1)
-                } else {
-                    Self {
-                        fine,
-                        fraction: fraction.max(0.0),
-                    }
-                }
-            }
-        }
-    }
-
-    /// One of the levels, by its weight.
-    pub(crate) fn pick(self, random: &mut f64) -> u32 {
-        if self.fraction == 0.0 || !picks_first(random, f64::from(self.fraction)) {
-            self.fine
-        } else {
-            self.fine + 1
-        }
-    }
-
-    fn lod(self) -> f32 {
-        self.fine as f32 + self.fraction
-    }
-
-    /// Blends two levels in f64, where a constant stays exact; a level of weight 0 is not read.
-    #[inline(always)]
-    fn blend(self, level: impl Fn(u32) -> Vec4) -> DVec4 {
-        let fine = level(self.fine).as_dvec4();
-        if self.fraction == 0.0 {
-            return fine;
-        }
-        let coarse = level(self.fine + 1).as_dvec4();
-        fine + (coarse - fine) * f64::from(self.fraction)
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_nearest_level_changes_after_the_half() {
-        let level = |lambda| {
-            let state = SamplerState {
-                mip: MipFilter::Nearest,
-                ..SamplerState::default()
-            };
-            Levels::at(lambda, 5, &state).fine
-        };
-        assert_eq!(
-            [0.0, 0.5, 0.51, 1.5, 1.6, 9.0, -3.0].map(level),
-            [0, 0, 1, 1, 2, 4, 0]
-        );
-    }
-
-    #[test]
-    fn odd_lambda_is_clamped_to_the_levels() {
-        let linear = |lambda| Levels::at(lambda, 5, &SamplerState::default());
-        assert_eq!(
-            linear(f32::INFINITY),
-            Levels {
-                fine: 4,
-                fraction: 0.0
-            }
-        );
-        assert_eq!(
-            linear(f32::NEG_INFINITY),
-            Levels {
-                fine: 0,
-                fraction: 0.0
-            }
-        );
-        assert_eq!(
-            linear(2.25),
-            Levels {
-                fine: 2,
-                fraction: 0.25
-            }
-        );
-    }
-
-    #[test]
-    fn outside_the_band_one_level_answers() {
-        let state = SamplerState {
-            mip_band: 0.5,
-            ..SamplerState::default()
-        };
-        let lod = |lambda| Levels::at(lambda, 5, &state).lod();
-        let lambdas = [0.0, 1.0, 1.25, 1.375, 1.5, 1.75, 1.9, 3.9, 4.0];
-        assert_eq!(
-            lambdas.map(lod),
-            [0.0, 1.0, 1.0, 1.25, 1.5, 2.0, 2.0, 4.0, 4.0]
-        );
-        // What is no band is trilinear filtering, or nearly a step.
-        let odd = |mip_band| {
-            let state = SamplerState { mip_band, ..state };
-            [1.3, 1.6].map(|lambda| Levels::at(lambda, 5, &state).lod())
-        };
-        assert_eq!(odd(f32::NAN), [1.3, 1.6]);
-        assert_eq!(odd(9.0), [1.3, 1.6]);
-        assert_eq!(odd(-1.0), [1.0, 2.0]);
-    }
 }

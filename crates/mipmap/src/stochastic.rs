@@ -2,7 +2,8 @@ use glam::{DVec2, UVec2, Vec4};
 
 use crate::footprint::Footprint;
 use crate::pyramid::Pyramid;
-use crate::sample::{Plan, SamplerState};
+use crate::sample::Plan;
+use crate::sampler_state::SamplerState;
 
 /// One texel under `footprint`, picked so that the mean over many is [`crate::sample`]'s result.
 ///

@@ -32,7 +32,8 @@ use self::lattice::Lattice;
 use self::window::Window;
 use crate::footprint::{AxisLengths, Footprint};
 use crate::pyramid::Pyramid;
-use crate::sample::{SamplerState, sample};
+use crate::sample::sample;
+use crate::sampler_state::SamplerState;
 
 /// Standard deviation of the pixel, in pixels.
 pub(crate) const SIGMA: f64 = 0.5;

@@ -8,7 +8,7 @@ use super::plan::Ellipse;
 use super::{PackedPyramid, PacketFootprint, Taps};
 use crate::automatic::Tolerance;
 use crate::lod::LodRule;
-use crate::sample::{MAX_ANISOTROPY, SamplerState};
+use crate::sampler_state::{MAX_ANISOTROPY, SamplerState};
 
 /// The colours under sixteen footprints, a packet a channel, each by the reading that [`crate::Reading::choose`] gives
 /// its lane: as [`crate::automatic`].

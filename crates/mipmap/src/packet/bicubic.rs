@@ -10,7 +10,7 @@ use super::layout::Placed;
 use super::line::Line;
 use super::plan::Plan;
 use super::{PackedPyramid, PacketFootprint};
-use crate::sample::SamplerState;
+use crate::sampler_state::SamplerState;
 
 /// The filter of each lane.
 pub(super) struct Kernels<S: Simd> {

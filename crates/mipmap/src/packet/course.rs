@@ -9,7 +9,7 @@ use super::layout::Placed;
 use super::line::Line;
 use super::plan::Plan;
 use super::{PackedPyramid, PacketFootprint};
-use crate::sample::SamplerState;
+use crate::sampler_state::SamplerState;
 
 /// Where a packet's taps are: one place on one or two levels, or pairs of probes on either side of it.
 pub(super) struct Course<S: Simd> {

@@ -79,7 +79,8 @@ pub(super) fn pick(texels: &[u64], tap: &Tap, out: &mut [u32]) {
 
 #[inline(always)]
 fn copy(texels: &[u64], tap: &Tap, out: &mut [u32]) {
-    for (code, &offset) in out.iter_mut().zip(tap.offsets()) {
+    let offsets = &tap.offsets()[..out.len()];
+    for (code, &offset) in out.iter_mut().zip(offsets) {
         *code = upper(texels[offset as usize]);
     }
 }

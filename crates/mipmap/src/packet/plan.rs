@@ -6,7 +6,8 @@ use sampler::Filter;
 
 use super::{PackedPyramid, PacketFootprint};
 use crate::lod::{LodRule, packet_log2};
-use crate::sample::{CUT_SHARPENING, MAX_ANISOTROPY, MipFilter, SamplerState};
+use crate::sample::CUT_SHARPENING;
+use crate::sampler_state::{MAX_ANISOTROPY, MipFilter, SamplerState};
 
 /// The greatest aspect that a state lets probes follow.
 #[inline(always)]

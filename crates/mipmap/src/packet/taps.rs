@@ -9,7 +9,7 @@ use super::finish::{Codes, Colours, pick, summed};
 use super::line::Line;
 use super::plan::{Plan, greatest_anisotropy};
 use super::{PackedPyramid, PacketFootprint};
-use crate::sample::{MipFilter, SamplerState};
+use crate::sampler_state::{MipFilter, SamplerState};
 
 /// The texels that sixteen footprints read, found once for all textures of a shape.
 ///

@@ -17,7 +17,7 @@
 //! * [`Sums8`], [`Sums16`], [`SumsFloat`]: weighted sums of texels of a kind, all [`Sums`].
 //!
 //! # Accuracy
-//! Weights are integers in units of 2⁻¹⁴ that add up exactly, so a constant code comes back to the bit, and a tap is
+//! Weights are integers in units of 2⁻¹⁴ that add up exactly, so a constant 8-bit code comes back to the bit, and a tap is
 //! within [`TAP_MAX_ERROR`] of the exact blend.
 
 mod axis;

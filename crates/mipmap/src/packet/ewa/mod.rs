@@ -14,7 +14,7 @@ use self::oval::Oval;
 use self::shape::Shape;
 use super::{PackedPyramid, PacketFootprint, Taps};
 use crate::ewa::{BAND, EwaTier};
-use crate::sample::SamplerState;
+use crate::sampler_state::SamplerState;
 
 /// The colours under sixteen footprints, each weighted by a Gaussian pixel, a packet a channel: as [`crate::ewa`] by
 /// the address modes of the texture.
