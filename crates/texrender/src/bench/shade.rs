@@ -232,6 +232,12 @@ impl TileShader<'_> {
             taps.write_codes(simd, self.textures[0], &mut codes);
             return codes.simd_into(simd);
         }
+        if ROWS == 3 {
+            // Textures of one shape at one place; more of them than the nearer caches hold.
+            for texture in self.textures {
+                taps.prefetch(texture);
+            }
+        }
         let [r, g, b, _] = taps.sample(simd, self.textures[0]);
         let weights = three(
             #[inline(always)]
@@ -242,7 +248,6 @@ impl TileShader<'_> {
         let (normal, position) = ([nx, ny, nz], [px, py, pz]);
         let to_eye = self.eye_direction(simd, triangles, position);
         let (normal, highlight) = if ROWS == 3 {
-            // Textures of one shape at one place.
             let [x, y, z, _] = taps.sample(simd, self.textures[1]);
             let [strength, ..] = taps.sample(simd, self.textures[2]);
             let [tx, ty, tz, _] = mixed(&weights, &rows[2]);

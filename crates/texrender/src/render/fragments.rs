@@ -224,7 +224,8 @@ impl<'a, S: Simd> Fragments<'a, S> {
                 let transform = map.transform;
                 let place = Some(Place { set, transform });
                 let at = self.map_coordinates(map);
-                textures::sample(self.simd, self.frame, self.taps, image, &at, place)
+                let reader = (self.taps, &self.layout.shared);
+                textures::sample(self.simd, self.frame, reader, image, &at, place)
             }
             _ => self.blended(map),
         }

@@ -43,8 +43,8 @@ impl<'a> Frame<'a> {
         };
         let kernel = |kernel| FrameKernel {
             kernel,
-            layout: Layout::of(kernel, wants),
-            alpha_layout: Layout::of_alpha(kernel),
+            layout: Layout::of(kernel, wants, &resources.sheets),
+            alpha_layout: Layout::of_alpha(kernel, &resources.sheets),
         };
         let kernels: Vec<FrameKernel> = plan.kernels.iter().map(kernel).collect();
         let mappings = |draw: &Draw| {

@@ -1,5 +1,8 @@
 //! Which attributes the shading of a surface reads, and where they lie in the records of its triangles.
 
+use mipmap::packet::PackedPyramid;
+
+use super::textures::SharedTaps;
 use crate::plan::{Curvature, Kernel, Lighting, Map, Reflectance, TangentSource};
 use crate::scene::Coordinates;
 
@@ -26,6 +29,7 @@ pub(super) struct Layout {
     pub positions: bool,
     /// Whether points of the surface are asked for one by one.
     pub surface: bool,
+    pub shared: SharedTaps,
 }
 
 /// How many normals a triangle has.
@@ -59,8 +63,8 @@ pub(super) struct Wants {
 }
 
 impl Layout {
-    /// For the colour of a surface.
-    pub(super) fn of(kernel: &Kernel, wants: Wants) -> Self {
+    /// For the colour of a surface; `sheets`: all of the picture.
+    pub(super) fn of(kernel: &Kernel, wants: Wants, sheets: &[PackedPyramid]) -> Self {
         let lit = match &kernel.lighting {
             Lighting::Lit(lit) => Some(lit),
             Lighting::Unlit => None,
@@ -82,6 +86,7 @@ impl Layout {
         }
         for map in maps(kernel) {
             layout.read_coordinates(kernel, map.coordinates);
+            layout.shared.add(map, sheets);
         }
         if let Some(shown) = &kernel.shown {
             layout.read_surface(kernel);
@@ -93,13 +98,14 @@ impl Layout {
     }
 
     /// For the alpha of a surface.
-    pub(super) fn of_alpha(kernel: &Kernel) -> Self {
+    pub(super) fn of_alpha(kernel: &Kernel, sheets: &[PackedPyramid]) -> Self {
         let mut layout = Self {
             colors: kernel.vertex_colors,
             ..Self::default()
         };
         if let Some(map) = &kernel.base_color_map {
             layout.read_coordinates(kernel, map.coordinates);
+            layout.shared.add(map, sheets);
         }
         layout
     }

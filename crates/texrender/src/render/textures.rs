@@ -5,7 +5,7 @@ use std::cell::RefCell;
 use fearless_simd::f32x16;
 use fearless_simd::prelude::*;
 use glam::{DVec2, Vec2, Vec4};
-use mipmap::packet::{self, PacketFootprint, Taps};
+use mipmap::packet::{self, PackedPyramid, PacketFootprint, Taps};
 use mipmap::{Footprint, LodRule, SamplerState};
 use sampler::solid::box_width;
 use texcoord::AffineTransform;
@@ -13,7 +13,7 @@ use texcoord::AffineTransform;
 use super::coordinates::Coordinates;
 use super::frame::Frame;
 use crate::plan::{ImageMap, Map, MapReading, MapSource, TextureRole};
-use crate::scene::Texture;
+use crate::scene::{Coordinates as Set, Texture};
 
 /// The taps that were found last, and what for: the maps of a surface often read textures of one shape at one place.
 #[derive(Debug, Default)]
@@ -37,6 +37,53 @@ pub(super) struct Place {
     pub(super) transform: Option<AffineTransform>,
 }
 
+/// Sheets that maps of a surface read by the same taps, in groups: same shape, same place, same sampler.
+#[derive(Debug, Default)]
+pub(super) struct SharedTaps(Vec<(Found, Vec<usize>)>);
+
+/// Bytes of a sheet that the nearer caches hold anyway.
+const NEAR_BYTES: usize = 1 << 19;
+
+impl SharedTaps {
+    /// Adds a map, if its texels are worth asking for before they are read. `sheets`: all of the picture.
+    pub(super) fn add(&mut self, map: &Map, sheets: &[PackedPyramid]) {
+        let (MapSource::Image(image), Set::Set(set)) = (&map.source, map.coordinates) else {
+            return;
+        };
+        let (sheet, sampler, transform) = (image.sheet, image.sampler, map.transform);
+        if image.reading != MapReading::Sampler || sheets[sheet].byte_len() <= NEAR_BYTES {
+            return;
+        }
+        let at = Place { set, transform };
+        let found = Found { at, sheet, sampler };
+        match self
+            .0
+            .iter_mut()
+            .find(|(first, _)| first.serves(&found, sheets))
+        {
+            Some((_, group)) if group.contains(&sheet) => {}
+            Some((_, group)) => group.push(sheet),
+            None => self.0.push((found, vec![sheet])),
+        }
+    }
+
+    /// All that are read by the taps that are found for this one.
+    fn beside(&self, sheet: usize) -> &[usize] {
+        let group = self.0.iter().find(|(_, group)| group.contains(&sheet));
+        group.map_or(&[], |(_, group)| group)
+    }
+}
+
+impl Found {
+    /// Whether the taps are those that another map wants.
+    #[inline(always)]
+    fn serves(&self, wanted: &Self, sheets: &[PackedPyramid]) -> bool {
+        self.at == wanted.at
+            && self.sampler == wanted.sampler
+            && sheets[self.sheet].is_alike(&sheets[wanted.sheet])
+    }
+}
+
 impl LastTaps {
     /// Another packet begins.
     pub(super) fn forget(&mut self) {
@@ -44,12 +91,12 @@ impl LastTaps {
     }
 
     /// Finds the taps of a map, if they are not those that were found last. `place`: `None` for coordinates that no
-    /// other map has.
+    /// other map has. Texels of maps that share them are asked for.
     #[inline(always)]
     fn of<S: Simd>(
         &mut self,
         simd: S,
-        frame: &Frame,
+        (sheets, shared): (&[PackedPyramid], &SharedTaps),
         map: &ImageMap,
         footprint: &PacketFootprint<S>,
         place: Option<Place>,
@@ -59,19 +106,17 @@ impl LastTaps {
             sheet: map.sheet,
             sampler: map.sampler,
         });
-        let sheets = &frame.resources.sheets;
         let same = match (&self.found, &wanted) {
-            (Some(found), Some(wanted)) => {
-                found.at == wanted.at
-                    && found.sampler == wanted.sampler
-                    && sheets[found.sheet].is_alike(&sheets[map.sheet])
-            }
+            (Some(found), Some(wanted)) => found.serves(wanted, sheets),
             _ => false,
         };
         if !same {
             self.taps
                 .find(simd, &sheets[map.sheet], &map.sampler, footprint);
             self.found = wanted;
+            for &sheet in shared.beside(map.sheet) {
+                self.taps.prefetch(&sheets[sheet]);
+            }
         }
         &self.taps
     }
@@ -82,7 +127,7 @@ impl LastTaps {
 pub(super) fn sample<S: Simd>(
     simd: S,
     frame: &Frame,
-    last: &RefCell<LastTaps>,
+    (last, shared): (&RefCell<LastTaps>, &SharedTaps),
     map: &ImageMap,
     at: &Coordinates<S>,
     place: Option<Place>,
@@ -90,7 +135,8 @@ pub(super) fn sample<S: Simd>(
     simd.vectorize(
         #[inline(always)]
         || {
-            let sheet = &frame.resources.sheets[map.sheet];
+            let sheets = &*frame.resources.sheets;
+            let sheet = &sheets[map.sheet];
             let (s, t) = sheet.reduce(at.s.0, at.t.0);
             let footprint = PacketFootprint {
                 s,
@@ -103,7 +149,7 @@ pub(super) fn sample<S: Simd>(
             let mut last = last.borrow_mut();
             let texels = match map.reading {
                 MapReading::Sampler => {
-                    let taps = last.of(simd, frame, map, &footprint, place);
+                    let taps = last.of(simd, (sheets, shared), map, &footprint, place);
                     taps.sample(simd, sheet)
                 }
                 MapReading::Elliptic(tier) => packet::ewa(simd, sheet, tier, &footprint),
@@ -164,7 +210,10 @@ pub(super) fn sample_source<S: Simd>(
         (st.extend(p), changes)
     };
     match map.source {
-        MapSource::Image(image) => sample(simd, frame, last, &image, at, None),
+        MapSource::Image(image) => {
+            let shared = SharedTaps::default();
+            sample(simd, frame, (last, &shared), &image, at, None)
+        }
         MapSource::Solid(index) => {
             let Some(Texture::Solid(solid)) = frame.scene.textures.get(index) else {
                 return [f32x16::splat(simd, 1.0); 4];
