@@ -15,6 +15,7 @@ mod glb;
 mod hard_cases;
 mod lighting;
 mod mappings;
+mod merging;
 mod mutations;
 mod needs;
 mod output;

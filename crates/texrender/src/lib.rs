@@ -115,8 +115,8 @@ pub use prepare::{Resources, prepare};
 pub use render::{Film, Renderer, render};
 pub use scene::Scene;
 pub use settings::{
-    Aov, Background, DEFAULT_FOV_Y_DEGREES, EnvironmentSource, FilterChoice, Orbit, Settings, Show,
-    TileOrder, View,
+    Aov, Background, DEFAULT_FOV_Y_DEGREES, EnvironmentSource, FilterChoice, FragmentMerging,
+    Orbit, Settings, Show, TileOrder, View,
 };
 
 /// Bytes that a scene, its textures and its picture may take where nobody says otherwise: 4 GiB.

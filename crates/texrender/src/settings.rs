@@ -35,6 +35,8 @@ pub struct Settings {
     pub max_memory: u64,
     /// In which order tiles are drawn. It never changes the picture.
     pub tile_order: TileOrder,
+    /// What is shaded where a pixel sees several triangles of one surface.
+    pub fragments: FragmentMerging,
     /// Instructions that packets are made of; by default the best that the machine has. They never change the
     /// picture.
     pub simd: Level,
@@ -55,6 +57,7 @@ impl Default for Settings {
             show: None,
             max_memory: crate::DEFAULT_MAX_MEMORY,
             tile_order: TileOrder::Rows,
+            fragments: FragmentMerging::Neighbours,
             simd: Level::new(),
         }
     }
@@ -256,6 +259,18 @@ impl Show {
             Self::Coordinates => "uv",
         }
     }
+}
+
+/// What is shaded where a pixel sees several triangles of one surface.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum FragmentMerging {
+    /// Neighbours are shaded once, at the one of most samples, where what shading reads goes on over their common edge:
+    /// smooth normals, the same vertices, the same side seen. (Fatahalian et al., "Reducing Shading on GPUs using
+    /// Quad-Fragment Merging", 2010.)
+    #[default]
+    Neighbours,
+    /// Every triangle for itself.
+    Never,
 }
 
 /// In which order tiles are drawn.

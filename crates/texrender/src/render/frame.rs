@@ -6,7 +6,7 @@ use shading::LightKind;
 use shading::packet::Vec3x16;
 use texcoord::mapping::{PlacedMapping, Placement};
 
-use super::layout::{Layout, Wants};
+use super::layout::{Layout, Normals, Wants};
 use crate::plan::{Draw, Kernel, Plan, Viewpoint};
 use crate::prepare::Resources;
 use crate::scene::{MappingSpace, Projection, Scene, SurfaceMapping};
@@ -31,6 +31,8 @@ pub(super) struct FrameKernel<'a> {
     pub layout: Layout,
     /// For the test of its alpha.
     pub alpha_layout: Layout,
+    /// Whether what it reads goes on from a triangle to its neighbours wherever they have their vertices in common.
+    pub is_continuous: bool,
 }
 
 impl<'a> Frame<'a> {
@@ -41,10 +43,14 @@ impl<'a> Frame<'a> {
             near_lights: plan.lights.iter().any(|light| near(light.kind)),
             values: !plan.settings.aovs.is_empty(),
         };
-        let kernel = |kernel| FrameKernel {
-            kernel,
-            layout: Layout::of(kernel, wants, &resources.sheets),
-            alpha_layout: Layout::of_alpha(kernel, &resources.sheets),
+        let kernel = |kernel| {
+            let layout = Layout::of(kernel, wants, &resources.sheets);
+            FrameKernel {
+                kernel,
+                is_continuous: layout.normals != Normals::Flat && !layout.surface,
+                layout,
+                alpha_layout: Layout::of_alpha(kernel, &resources.sheets),
+            }
         };
         let kernels: Vec<FrameKernel> = plan.kernels.iter().map(kernel).collect();
         let mappings = |draw: &Draw| {

@@ -20,6 +20,7 @@ mod geometry;
 mod lanes;
 mod layout;
 mod mapped;
+mod merge;
 mod packets;
 mod pairs;
 mod record;

@@ -87,7 +87,7 @@ pub(super) fn shade_pairs<S: Simd>(
         }
         let pixel = rect.min + UVec2::new(pair.pixel % width, pair.pixel / width);
         packet.push(place, |lanes, record| {
-            lanes.push_pixel(record, pixel, pair.mask);
+            lanes.push_pixel(record, pixel, pair.held);
         });
         if let Some(values) = &mut out.values {
             let instance = frame.plan.draws[draw].instance;

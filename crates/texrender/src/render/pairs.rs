@@ -1,8 +1,9 @@
 //! The (pixel, surface) pairs of a tile, and the order in which they are shaded.
 
-use glam::Vec4;
+use glam::{UVec2, Vec4};
 use raster::{MAX_SAMPLES, OwnerRows, Owners, VisibilityTile};
 
+use super::merge::{Merger, Surfaces};
 use super::shade::Values;
 
 /// A surface over some samples of a pixel.
@@ -14,6 +15,8 @@ pub(super) struct Pair {
     pub triangle: u32,
     /// Samples that it covers.
     pub mask: u64,
+    /// Those of its triangle; the others are its neighbours'.
+    pub held: u64,
 }
 
 /// A shaded pair.
@@ -40,6 +43,7 @@ pub(super) struct Pairs {
     /// The blended ones as they were found: triangle by triangle.
     blended: Vec<Pair>,
     triangles: Distinct,
+    merger: Merger,
     starts: Vec<u32>,
 }
 
@@ -56,11 +60,14 @@ impl Pairs {
             pixel,
             triangle: self.triangles.number(triangle),
             mask,
+            held: mask,
         });
     }
 
-    /// Adds the visible surfaces of a tile, pixel by pixel; in a pixel in the order of their first samples.
-    pub(super) fn push_visible(&mut self, visibility: &VisibilityTile) {
+    /// Adds the visible surfaces of a tile, pixel by pixel; in a pixel in the order of their first samples. `surfaces`: if
+    /// neighbours on one are to be merged.
+    pub(super) fn push_visible(&mut self, visibility: &VisibilityTile, surfaces: Option<Surfaces>) {
+        self.merger.clear();
         let size = visibility.rect().size();
         let full = visibility.pattern().full_mask();
         match visibility.owners() {
@@ -72,7 +79,7 @@ impl Pairs {
             }
             Owners::Each(rows) => {
                 for y in 0..size.y {
-                    self.push_row(&rows, y, size.x, visibility.pattern().count());
+                    self.push_row(&rows, y, visibility, surfaces);
                 }
             }
         }
@@ -84,10 +91,19 @@ impl Pairs {
             pixel,
             triangle: self.triangles.number(owner),
             mask,
+            held: mask,
         });
     }
 
-    fn push_row(&mut self, rows: &OwnerRows, y: u32, width: u32, samples: usize) {
+    fn push_row(
+        &mut self,
+        rows: &OwnerRows,
+        y: u32,
+        visibility: &VisibilityTile,
+        surfaces: Option<Surfaces>,
+    ) {
+        let (corner, width) = (visibility.rect().min, visibility.rect().size().x);
+        let samples = visibility.pattern().count();
         let full = u64::MAX >> (u64::BITS as usize - samples);
         let mut owners = [&[][..]; MAX_SAMPLES];
         let owners = &mut owners[..samples];
@@ -104,6 +120,7 @@ impl Pairs {
                 continue;
             }
             let at = |sample: usize| owners[sample][x as usize];
+            let first = self.all.len();
             let mut left = full;
             while left != 0 {
                 let owner = at(left.trailing_zeros() as usize);
@@ -113,6 +130,11 @@ impl Pairs {
                 if owner != OwnerRows::NOBODY {
                     self.push(pixel, owner, mask);
                 }
+            }
+            if let (Some(surfaces), true) = (surfaces, self.all.len() > first + 1) {
+                let place = corner + UVec2::new(x, y);
+                let (all, owners) = (&mut self.all, &self.triangles.owners);
+                self.merger.merge(surfaces, place, (all, first), owners);
             }
         }
     }

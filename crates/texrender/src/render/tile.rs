@@ -11,6 +11,7 @@ use super::background::background;
 use super::film::FilmTile;
 use super::frame::Frame;
 use super::geometry::Geometry;
+use super::merge::Surfaces;
 use super::packets::{AlphaTest, Packet, shade_pairs, test_alphas};
 use super::pairs::{Pairs, Shaded};
 use super::renderer::TileTimes;
@@ -19,6 +20,7 @@ use super::shade::Values;
 use crate::plan::Plan;
 use crate::prepare::Resources;
 use crate::scene::Scene;
+use crate::settings::FragmentMerging;
 
 /// Alpha tests that are gathered before they are made: enough for full packets, few enough that what they hide is
 /// not tested in vain.
@@ -124,7 +126,9 @@ impl<'a> TileRenderer<'a> {
 
         let (pairs, visibility) = (&mut scratch.pairs, &mut scratch.visibility);
         pairs.clear();
-        pairs.push_visible(visibility);
+        let frame = &self.frame;
+        let merging = frame.plan.settings.fragments == FragmentMerging::Neighbours;
+        pairs.push_visible(visibility, merging.then_some(Surfaces { frame, geometry }));
         let width = rect.size().x;
         for &t in &triangles[blended..] {
             visibility.visit(geometry.triangle(t), |pixel, mask| {

@@ -5,7 +5,8 @@ use std::path::PathBuf;
 use clap::{Args, Parser, Subcommand};
 use texrender::{
     Aov, Background, BitDepth, DEFAULT_FOV_Y_DEGREES, EnvironmentSource, FilterChoice,
-    FinishOptions, LoadOptions, Orbit, OutsidePaths, Settings, Show, SimdLevel, ToneMap, View,
+    FinishOptions, FragmentMerging, LoadOptions, Orbit, OutsidePaths, Settings, Show, SimdLevel,
+    ToneMap, View,
 };
 
 use crate::unwrap::UnwrapArgs;
@@ -212,6 +213,10 @@ pub(crate) struct PictureArgs {
     /// Coverage samples a pixel: 1, 2, 4, 8, 16, 32 or 64. Left out: 4.
     #[arg(long, value_name = "N")]
     pub samples: Option<u32>,
+    /// Shade triangles of one smooth surface that a pixel sees once, as one of the neighbours, or each for itself: slower
+    /// on fine meshes.
+    #[arg(long, value_name = "neighbours|never", default_value = "neighbours", value_parser = values::merging)]
+    pub merge: FragmentMerging,
     /// Show texture coordinates instead of materials: a checkerboard, how they stretch the surface, texels a unit, the
     /// mip level that they read, or themselves.
     #[arg(long, value_name = "checker|distortion|texel-density|mip|uv", value_parser = values::show)]
@@ -268,6 +273,7 @@ impl PictureArgs {
             max_memory: self.max_memory,
             simd: self.simd,
             tile_order: file.tile_order,
+            fragments: self.merge,
         }
     }
 

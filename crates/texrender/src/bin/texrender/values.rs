@@ -4,7 +4,7 @@ use fearless_simd::Level;
 use std::path::PathBuf;
 
 use glam::DVec3;
-use texrender::{Aov, BitDepth, EnvironmentSource, Show};
+use texrender::{Aov, BitDepth, EnvironmentSource, FragmentMerging, Show};
 
 pub(crate) fn size(text: &str) -> Result<(u32, u32), String> {
     let parse = || {
@@ -71,6 +71,14 @@ pub(crate) fn bit_depth(text: &str) -> Result<BitDepth, String> {
         "8" => Ok(BitDepth::Eight),
         "16" => Ok(BitDepth::Sixteen),
         _ => Err("choose 8 or 16".to_owned()),
+    }
+}
+
+pub(crate) fn merging(text: &str) -> Result<FragmentMerging, String> {
+    match text {
+        "neighbours" => Ok(FragmentMerging::Neighbours),
+        "never" => Ok(FragmentMerging::Never),
+        _ => Err("choose neighbours or never".to_owned()),
     }
 }
 
