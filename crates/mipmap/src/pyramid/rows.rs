@@ -43,6 +43,19 @@ impl Schedule {
         }
     }
 
+    /// Rows of a task, of `rows` in all: as few tasks as keep every thread busy, of `least` rows or more.
+    pub(super) fn strip_rows(self, rows: u32, least: u32) -> u32 {
+        match self {
+            Self::Serial => rows,
+            #[cfg(feature = "rayon")]
+            Self::CurrentPool => {
+                let threads = u32::try_from(rayon::current_num_threads()).unwrap_or(u32::MAX);
+                rows.div_ceil(threads.saturating_mul(TASKS_A_THREAD))
+                    .max(least)
+            }
+        }
+    }
+
     /// Calls `body` with each of `tasks`; a thread hands its `scratch` from task to task.
     pub(super) fn for_each<T: Send, S>(
         self,
@@ -103,6 +116,10 @@ impl Schedule {
         }
     }
 }
+
+/// More share the work more evenly, and make more rows twice.
+#[cfg(feature = "rayon")]
+const TASKS_A_THREAD: u32 = 2;
 
 fn stored(size: UVec2, format: Format, linear: &[f32]) -> Texture {
     Texture::from_linear(size, format, linear)
