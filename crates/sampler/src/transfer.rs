@@ -209,8 +209,10 @@ impl SrgbU8Encoder {
     #[inline(always)]
     pub fn encode_packet<S: Simd>(&self, simd: S, light: f32x16<S>) -> u32x16<S> {
         let from = f32x16::splat(simd, TABLE_FROM);
-        let held = light.simd_gt(from).select(light, from);
-        let bits: u32x16<S> = held.min(f32x16::splat(simd, TABLE_TO)).bitcast();
+        // The lower bound comes last and is told from the value before the upper one: a plain "greater, or the bound"
+        // becomes one instruction on NEON, which lets signalling NaN through.
+        let held = light.min(f32x16::splat(simd, TABLE_TO));
+        let bits: u32x16<S> = light.simd_gt(from).select(held, from).bitcast();
         let places = (bits >> SLOT_SHIFT) - FIRST_SLOT;
         let mut slots = [0; 16];
         for (slot, place) in slots.iter_mut().zip(places.to_array()) {

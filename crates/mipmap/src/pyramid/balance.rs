@@ -14,7 +14,7 @@
 
 /// Where a row or column sum counts as right.
 const TOLERANCE: f64 = 1e-13;
-/// Steps at most. They leave less than 1e-9 of sides up to 2048, less than 4e-6 of 4099 (tested in `polyphase.rs`):
+/// Steps at most. They leave less than 1e-9 of odd sides up to 2048, less than 4e-6 of 4099 (tested in `polyphase.rs`):
 /// where a texture's phases turn slowly, imbalance must travel far.
 const STEPS: u32 = 1000;
 

@@ -13,30 +13,15 @@
 //! ```
 
 use glam::UVec2;
-use sampler::transfer::{decode_srgb_u8, decode_unorm_u8, encode_u8};
-use sampler::{Component, Format, Texels, Texture, Transfer};
+use sampler::transfer::{decode_srgb_u8, decode_unorm_u8};
+use sampler::{Component, Format, Texels, Transfer};
 
 use super::box_filter::{Averaging, Method, reduce_even};
 use super::rows::Schedule;
+use super::strips::{Cascade, Levels, Rows, Strip};
 
 /// The most levels of a pass: a strip is 2⁶ rows of level 0, and what is left is 1/4096 of it.
 const MOST_LEVELS: u32 = 6;
-
-/// Levels of one texture, and the unrounded texels of the last of them.
-pub(super) struct Cascade {
-    pub(super) levels: Vec<Texture>,
-    pub(super) linear: Vec<f32>,
-}
-
-/// What is done to texels on their way in and out.
-pub(super) trait Rows: Sync {
-    /// Row j of level 0 as it is averaged.
-    fn read(&self, j: u32, row: &mut [f32]);
-    /// Averages as they are stored, still linear.
-    fn finish(&self, row: &mut [f32]);
-    /// Whether both do nothing but decode.
-    fn plain(&self) -> bool;
-}
 
 /// How many levels one pass makes, of `wanted`: as many as both sides can be halved.
 pub(super) fn levels_of_a_pass(size: UVec2, wanted: u32) -> u32 {
@@ -44,78 +29,26 @@ pub(super) fn levels_of_a_pass(size: UVec2, wanted: u32) -> u32 {
     halvings.min(wanted).min(MOST_LEVELS)
 }
 
-/// The first `count` levels of an 8-bit texture whose sides can be halved as often.
+/// Levels of an 8-bit texture whose sides can be halved as often.
 pub(super) fn cascade(
-    texture: &Texture,
+    levels: &Levels<'_>,
     method: Method,
     schedule: Schedule,
-    count: u32,
     rows: &impl Rows,
 ) -> Cascade {
-    let size = texture.size();
-    let channels = method.channels;
-    let length = |level: u32| (size.x >> level) as usize * channels;
-    let mut codes: Vec<Vec<u8>> = (1..=count)
-        .map(|level| vec![0; length(level) * (size.y >> level) as usize])
-        .collect();
-    let mut linear = vec![0.0; length(count) * (size.y >> count) as usize];
-
-    // A strip is a row of the last level and all that it is made of.
-    let mut strips: Vec<Strip<'_>> = linear
-        .chunks_exact_mut(length(count))
-        .zip(0..)
-        .map(|(linear, index)| Strip {
-            index,
-            linear,
-            codes: Vec::with_capacity(codes.len()),
-        })
-        .collect();
-    for (level, codes) in (1..=count).zip(&mut codes) {
-        let rows_a_strip = 1usize << (count - level);
-        for (strip, part) in strips
-            .iter_mut()
-            .zip(codes.chunks_exact_mut(length(level) * rows_a_strip))
-        {
-            strip.codes.push(part);
-        }
-    }
     let maker = Maker {
-        texture,
+        levels,
         method,
         rows,
-        count,
-        decoder: Decoder::of(texture.format()),
+        decoder: Decoder::of(levels.texture.format()),
     };
-    schedule.for_each(
-        strips,
+    // A strip is a row of the last level and all that it is made of.
+    levels.make(
+        1,
+        schedule,
         || maker.scratch(),
-        |scratch, strip| {
-            maker.make(scratch, strip);
-        },
-    );
-
-    let format = texture.format();
-    let levels = (1..=count).zip(codes).map(|(level, codes)| {
-        Texture::new(
-            size >> level,
-            format.channels,
-            format.transfer,
-            Texels::U8(codes),
-        )
-        .expect("as many codes as the size asks for")
-        .with_alpha(format.alpha)
-    });
-    Cascade {
-        levels: levels.collect(),
-        linear,
-    }
-}
-
-/// A row of the last level, and where the rows it is made of are stored.
-struct Strip<'a> {
-    index: u32,
-    linear: &'a mut [f32],
-    codes: Vec<&'a mut [u8]>,
+        |scratch, strip| maker.make(scratch, strip),
+    )
 }
 
 /// What a worker keeps from strip to strip.
@@ -124,94 +57,63 @@ struct Scratch {
     source: Vec<f32>,
     /// Two rows of each level.
     rows: Vec<[Vec<f32>; 2]>,
-    /// A row on its way out.
-    finished: Vec<f32>,
 }
 
 struct Maker<'a, R> {
-    texture: &'a Texture,
+    levels: &'a Levels<'a>,
     method: Method,
     rows: &'a R,
-    count: u32,
     decoder: Decoder,
 }
 
 impl<R: Rows> Maker<'_, R> {
-    fn length(&self, level: u32) -> usize {
-        (self.texture.size().x >> level) as usize * self.method.channels
-    }
-
     fn scratch(&self) -> Scratch {
+        let row = |level| vec![0.0; self.levels.length(level)];
         Scratch {
-            source: vec![0.0; 2 * self.length(0)],
-            rows: (1..=self.count)
-                .map(|level| [(); 2].map(|()| vec![0.0; self.length(level)]))
+            source: vec![0.0; 2 * self.levels.length(0)],
+            rows: (1..=self.levels.count)
+                .map(|level| [(); 2].map(|()| row(level)))
                 .collect(),
-            finished: vec![0.0; self.length(1)],
         }
     }
 
-    fn make(&self, scratch: &mut Scratch, strip: Strip<'_>) {
-        let Strip {
-            index,
-            linear,
-            mut codes,
-        } = strip;
-        let rows = 1u32 << (self.count - 1);
-        for i in 0..rows {
-            self.first_level(index * rows + i, scratch, i % 2);
-            self.store(1, i, scratch, &mut codes);
-            // A second row of a level makes one of the next.
-            let (mut level, mut row) = (1, i);
-            while row % 2 == 1 && level < self.count {
+    fn make(&self, scratch: &mut Scratch, strip: &mut Strip<'_>) {
+        for first in strip.rows(1) {
+            self.first_level(first, scratch);
+            let (mut level, mut j) = (1, first);
+            loop {
+                let made = &scratch.rows[level as usize - 1][(j % 2) as usize];
+                strip.store(level, j, made, self.rows);
+                // A second row of a level makes one of the next.
+                if j % 2 == 0 || level == self.levels.count {
+                    break;
+                }
                 let (finer, coarser) = scratch.rows.split_at_mut(level as usize);
                 let [above, below] = &finer[level as usize - 1];
-                let next = &mut coarser[0][(row / 2 % 2) as usize];
+                (level, j) = (level + 1, j / 2);
+                let next = &mut coarser[0][(j % 2) as usize];
                 reduce_even(self.method, above, below, next);
-                (level, row) = (level + 1, row / 2);
-                self.store(level, row, scratch, &mut codes);
             }
         }
-        linear.copy_from_slice(&scratch.rows[self.count as usize - 1][0]);
-    }
-
-    fn encode(&self, linear: &[f32], out: &mut [u8]) {
-        let format = self.texture.format();
-        encode_u8(format.transfer, self.method.channels, linear, out);
     }
 
     /// Row j of level 1.
-    fn first_level(&self, j: u32, scratch: &mut Scratch, parity: u32) {
-        let out = &mut scratch.rows[0][parity as usize];
-        if let Texels::U8(codes) = self.texture.texels()
+    fn first_level(&self, j: u32, scratch: &mut Scratch) {
+        let out = &mut scratch.rows[0][(j % 2) as usize];
+        let length = self.levels.length(0);
+        if let Texels::U8(codes) = self.levels.texture.texels()
             && self.rows.plain()
             && self.method.averaging == Averaging::Independent
         {
-            let length = self.length(0);
             let pair = &codes[2 * j as usize * length..][..2 * length];
             return self
                 .decoder
                 .quads(self.method.channels, pair.split_at(length), out);
         }
-        let (above, below) = scratch.source.split_at_mut(self.length(0));
+        let (above, below) = scratch.source.split_at_mut(length);
         self.rows.read(2 * j, above);
         self.rows.read(2 * j + 1, below);
         reduce_even(self.method, above, below, out);
-    }
-
-    /// Rounds the row of `level` that was made last.
-    fn store(&self, level: u32, row: u32, scratch: &mut Scratch, codes: &mut [&mut [u8]]) {
-        let length = self.length(level);
-        let index = level as usize - 1;
-        let out = &mut codes[index][row as usize * length..][..length];
-        let made = &scratch.rows[index][(row % 2) as usize];
-        if self.rows.plain() {
-            return self.encode(made, out);
-        }
-        let finished = &mut scratch.finished[..length];
-        finished.copy_from_slice(made);
-        self.rows.finish(finished);
-        self.encode(finished, out);
     }
 }
 

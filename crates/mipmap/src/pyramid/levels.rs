@@ -4,12 +4,13 @@ use glam::UVec2;
 use sampler::{Component, Texels, Texture};
 
 use super::box_filter::{self, Arithmetic, Averaging, Method, halved};
-use super::cascade::{self, Cascade};
+use super::cascade;
 use super::content::{Content, EnvironmentChart};
 use super::coverage::Cutoff;
 use super::kernel::Kernel;
 use super::range::Range;
 use super::resample::Wide;
+use super::strips::{self, Cascade};
 use super::{NegativeLobes, PyramidOptions};
 use crate::error::Error;
 
@@ -169,17 +170,34 @@ impl Reduction {
 
     /// The first levels in one pass, of at most `wanted`; `None` where that is not worth it, or needs whole levels.
     fn cascade(&self, texture: &Texture, wanted: u32) -> Option<Cascade> {
-        let count = cascade::levels_of_a_pass(texture.size(), wanted);
         let by_rows = self.format.component == Component::U8
             && self.method.chart.is_none()
-            && self.range.is_none()
             && self.coverage.is_none();
+        let count = match self.range {
+            None => cascade::levels_of_a_pass(texture.size(), wanted),
+            Some(_) => Wide::levels_of_a_cascade(texture.size(), wanted),
+        };
         (by_rows && count > 0).then(|| {
             let rows = RowsOf {
                 reduction: self,
                 texture,
             };
-            cascade::cascade(texture, self.method, self.options.schedule, count, &rows)
+            let levels = strips::Levels { texture, count };
+            match self.wide() {
+                None => cascade::cascade(&levels, self.method, self.options.schedule, &rows),
+                Some(wide) => wide.cascade(&levels, self.options.schedule, &rows),
+            }
+        })
+    }
+
+    /// The wide kernel, if it is one.
+    fn wide(&self) -> Option<Wide> {
+        self.range.map(|range| Wide {
+            kernel: self.options.kernel,
+            address: self.options.address,
+            method: self.method,
+            component: self.format.component,
+            range,
         })
     }
 
@@ -204,17 +222,7 @@ impl Reduction {
 
     /// A level as it is kept: in the format of level 0.
     pub(crate) fn store(&self, size: UVec2, linear: &[f32]) -> Texture {
-        let held = match self.options.negative_lobes {
-            NegativeLobes::Clamp => self.range,
-            NegativeLobes::Keep => None,
-        };
-        let is_finished = held.is_none() && !matches!(self.content, Content::Roughness { .. });
-        let finish = |rows: &mut [f32]| {
-            if let Some(range) = &held {
-                range.hold_row(self.method.channels, rows);
-            }
-            self.finish_row(rows);
-        };
+        let finish = |rows: &mut [f32]| self.finish_rows(rows);
         let schedule = self.options.schedule;
         if let Some((cutoff, share)) = self.coverage {
             let mut linear = linear.to_vec();
@@ -222,7 +230,12 @@ impl Reduction {
             cutoff.keep(share, size.x as usize, self.format, &mut linear);
             return schedule.store(size, self.format, &linear, None::<fn(&mut [f32])>);
         }
-        schedule.store(size, self.format, linear, (!is_finished).then_some(finish))
+        schedule.store(
+            size,
+            self.format,
+            linear,
+            (!self.is_plain()).then_some(finish),
+        )
     }
 
     fn reduce_rows(
@@ -232,15 +245,9 @@ impl Reduction {
         read_row: impl Fn(u32, &mut [f32]) + Sync,
     ) -> Vec<f32> {
         let schedule = self.options.schedule;
-        match self.range {
+        match self.wide() {
             None => box_filter::reduce(size, target, self.method, schedule, read_row),
-            Some(range) => Wide {
-                kernel: self.options.kernel,
-                address: self.options.address,
-                method: self.method,
-                range,
-            }
-            .reduce(size, target, schedule, read_row),
+            Some(wide) => wide.reduce(size, target, schedule, read_row),
         }
     }
 
@@ -248,10 +255,11 @@ impl Reduction {
     fn range_of(&self, texture: &Texture) -> Range {
         let channels = self.method.channels;
         let weighted = self.method.averaging == Averaging::AlphaWeighted;
-        let plain = !weighted && !matches!(self.content, Content::Roughness { .. });
-        if let (true, Texels::U8(codes)) = (plain, texture.texels()) {
+        let decoded = !matches!(self.content, Content::Roughness { .. });
+        let alpha = weighted.then(|| channels - 1);
+        if let (true, Texels::U8(codes)) = (decoded, texture.texels()) {
             // Decoding is monotonic: the extreme codes are the extreme values.
-            return Range::of_codes(channels, codes, |codes, values| {
+            return Range::of_codes(channels, alpha, codes, |codes, values| {
                 let texel = Texture::new(
                     UVec2::ONE,
                     self.format.channels,
@@ -263,12 +271,9 @@ impl Reduction {
                     .decode_row(0, values);
             });
         }
-        Range::of_rows(
-            texture.size(),
-            channels,
-            weighted.then(|| channels - 1),
-            |j, row| self.read_row(texture, j, row),
-        )
+        Range::of_rows(texture.size(), channels, alpha, |j, row| {
+            self.read_row(texture, j, row)
+        })
     }
 
     /// A row of level 0 as it is averaged: linear, and roughness r as r⁴.
@@ -289,10 +294,26 @@ impl Reduction {
 }
 
 impl Reduction {
-    /// Averages as they are stored: r⁴ as r.
-    fn finish_row(&self, row: &mut [f32]) {
+    /// What each channel of a stored level is held to.
+    fn held(&self) -> Option<Range> {
+        match self.options.negative_lobes {
+            NegativeLobes::Clamp => self.range,
+            NegativeLobes::Keep => None,
+        }
+    }
+
+    /// Whether averages are stored as they are.
+    fn is_plain(&self) -> bool {
+        self.held().is_none() && !matches!(self.content, Content::Roughness { .. })
+    }
+
+    /// Averages as they are stored: within the texture's range, and r⁴ as r.
+    fn finish_rows(&self, rows: &mut [f32]) {
+        if let Some(range) = self.held() {
+            range.hold_row(self.method.channels, rows);
+        }
         if let Content::Roughness { channel } = self.content {
-            for texel in row.chunks_exact_mut(self.method.channels) {
+            for texel in rows.chunks_exact_mut(self.method.channels) {
                 // r = (r⁴)^¼; a negative lobe may have left less than nothing.
                 let value = &mut texel[usize::from(channel)];
                 *value = value.max(0.0).sqrt().sqrt();
@@ -307,17 +328,17 @@ struct RowsOf<'a> {
     texture: &'a Texture,
 }
 
-impl cascade::Rows for RowsOf<'_> {
+impl strips::Rows for RowsOf<'_> {
     fn read(&self, j: u32, row: &mut [f32]) {
         self.reduction.read_row(self.texture, j, row);
     }
 
     fn finish(&self, row: &mut [f32]) {
-        self.reduction.finish_row(row);
+        self.reduction.finish_rows(row);
     }
 
     fn plain(&self) -> bool {
-        !matches!(self.reduction.content, Content::Roughness { .. })
+        self.reduction.is_plain()
     }
 }
 

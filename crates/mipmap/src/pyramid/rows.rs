@@ -43,6 +43,18 @@ impl Schedule {
         }
     }
 
+    /// Rows of a task, of `rows` in all: as few tasks as keep every thread busy, of `least` rows or more.
+    pub(super) fn strip_rows(self, rows: u32, least: u32) -> u32 {
+        let tasks = match self {
+            Self::Serial => 1,
+            #[cfg(feature = "rayon")]
+            Self::CurrentPool => {
+                u32::try_from(rayon::current_num_threads() * TASKS_A_THREAD).unwrap_or(u32::MAX)
+            }
+        };
+        rows.div_ceil(tasks).max(least)
+    }
+
     /// Calls `body` with each of `tasks`; a thread hands its `scratch` from task to task.
     pub(super) fn for_each<T: Send, S>(
         self,
@@ -103,6 +115,10 @@ impl Schedule {
         }
     }
 }
+
+/// More share the work more evenly, and make more rows twice.
+#[cfg(feature = "rayon")]
+const TASKS_A_THREAD: usize = 2;
 
 fn stored(size: UVec2, format: Format, linear: &[f32]) -> Texture {
     Texture::from_linear(size, format, linear)

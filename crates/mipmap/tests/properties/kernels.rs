@@ -1,9 +1,12 @@
 //! The wide kernels: weights, means, lobes, sharpness.
 
 use glam::UVec2;
-use mipmap::pyramid::{Kernel, NegativeLobes, PyramidOptions, WIDE_KERNEL_MEAN_ERROR};
+use mipmap::pyramid::{
+    Kernel, NegativeLobes, PyramidOptions, WIDE_KERNEL_MEAN_ERROR, WIDE_KERNEL_U8_ERROR,
+};
 use mipmap::{Content, Pyramid};
 use proptest::prelude::*;
+use sampler::transfer::{encode_srgb_u8, encode_unorm_u8};
 use sampler::{AddressMode, Texels, Texture, Transfer};
 
 use crate::oracle;
@@ -107,6 +110,77 @@ proptest! {
             let [before, after] = [level - 1, level].map(|level| oracle::mean(pyramid.level(level)).x);
             let greatest = oracle::texels(pyramid.level(level - 1)).iter().map(|t| t.x.abs()).fold(0.0, f64::max);
             prop_assert!((before - after).abs() <= WIDE_KERNEL_MEAN_ERROR * greatest, "{kernel:?} {mode:?} {size} {level}: {before} {after}");
+        }
+    }
+
+    /// A code of 8 bits is the nearest to what f64 sums of the same texels give, within the bound.
+    #[test]
+    fn eight_bit_texels_are_those_of_f64_sums(
+        half in size(), odd: bool, seed: u64, kernel in kernel(), mode in mode(), srgb: bool, levels in 2u32..6,
+    ) {
+        let size = if odd { half } else { half * 2 };
+        let transfer = if srgb { Transfer::Srgb } else { Transfer::Linear };
+        let mut noise = Noise::new(seed);
+        let codes: Vec<u8> = (0..size.x * size.y * 3).map(|_| (noise.next() * 255.0) as u8).collect();
+        let eight = made(size, 3, transfer, Texels::U8(codes));
+        let light = oracle::texels(&eight).iter().flat_map(|t| [t.x as f32, t.y as f32, t.z as f32]).collect();
+        let long = made(size, 3, Transfer::Linear, Texels::F32(light));
+        let mut options = options(kernel, mode, NegativeLobes::Clamp);
+        options.levels = Some(levels.min(size.max_element().ilog2() + 1));
+        let [eight, long] = [eight, long].map(|texture| Pyramid::build_with(texture, Content::Colour, &options).unwrap());
+        for level in 1..eight.levels() {
+            let (Texels::U8(codes), Texels::F32(sums)) = (eight.level(level).texels(), long.level(level).texels()) else {
+                panic!("levels are stored as the texture is");
+            };
+            let bound = WIDE_KERNEL_U8_ERROR * level as f32;
+            let encode = |value| if srgb { encode_srgb_u8(value) } else { encode_unorm_u8(value) };
+            for (&code, &sum) in codes.iter().zip(sums) {
+                prop_assert!((encode(sum - bound)..=encode(sum + bound)).contains(&code), "{size} {level}: {code}, {sum}");
+            }
+        }
+    }
+
+    /// A constant of 8 bits is that constant on every level, of straight colour and alpha too.
+    #[test]
+    fn eight_bit_constants_survive_every_kernel(
+        size in size(), texel: [u8; 4], channels in 1u8..=4, kernel in kernel(), mode in mode(), keep: bool,
+    ) {
+        let mut texel = texel[..usize::from(channels)].to_vec();
+        if channels % 2 == 0 {
+            // Colour under alpha 0 is arbitrary.
+            *texel.last_mut().unwrap() |= 1;
+        }
+        let lobes = if keep { NegativeLobes::Keep } else { NegativeLobes::Clamp };
+        let texture = made(size, channels, Transfer::Srgb, Texels::U8(texel.repeat((size.x * size.y) as usize)));
+        let pyramid = Pyramid::build_with(texture, Content::Colour, &options(kernel, mode, lobes)).unwrap();
+        for level in 1..pyramid.levels() {
+            let level = pyramid.level(level);
+            let count = (level.size().x * level.size().y) as usize;
+            prop_assert_eq!(level.texels(), &Texels::U8(texel.repeat(count)));
+        }
+    }
+
+    /// Straight colour of 8 bits stays within the codes of what is visible.
+    #[test]
+    fn eight_bit_colour_stays_within_visible_codes(size in size(), seed: u64, kernel in kernel(), mode in mode()) {
+        let mut noise = Noise::new(seed);
+        let codes: Vec<u8> = (0..size.x * size.y)
+            .flat_map(|_| {
+                let visible = noise.next() < 0.5;
+                let colour = if visible { 80.0 + 90.0 * noise.next() } else { 255.0 * noise.next().round() };
+                [colour as u8, if visible { 1 + (254.0 * noise.next()) as u8 } else { 0 }]
+            })
+            .collect();
+        let visible = || codes.as_chunks::<2>().0.iter().filter(|[_, alpha]| *alpha > 0).map(|[colour, _]| *colour);
+        let Some((least, greatest)) = visible().min().zip(visible().max()) else { return Ok(()) };
+        let texture = made(size, 2, Transfer::Srgb, Texels::U8(codes.clone()));
+        let pyramid = Pyramid::build_with(texture, Content::Colour, &options(kernel, mode, NegativeLobes::Clamp)).unwrap();
+        for level in 1..pyramid.levels() {
+            if let Texels::U8(codes) = pyramid.level(level).texels() {
+                for [colour, alpha] in codes.as_chunks::<2>().0 {
+                    prop_assert!(*alpha == 0 || (least..=greatest).contains(colour), "{colour} {alpha}");
+                }
+            }
         }
     }
 
@@ -279,7 +353,6 @@ fn wide_kernels_are_sharper_and_alias_less_than_the_box() {
 #[test]
 fn a_parallel_build_gives_the_same_bits() {
     use mipmap::pyramid::{EnvironmentChart, Schedule};
-    let texture = crate::coverage::foliage(UVec2::new(301, 203), 2.0);
     let environment = Content::Environment(EnvironmentChart::LatLong);
     let contents = [
         Content::Colour,
@@ -287,7 +360,12 @@ fn a_parallel_build_gives_the_same_bits() {
         Content::Roughness { channel: 1 },
         environment,
     ];
-    for content in contents {
+    let textures = [UVec2::new(301, 203), UVec2::new(64, 1024)]
+        .map(|size| crate::coverage::foliage(size, 2.0));
+    for (content, texture) in contents
+        .iter()
+        .flat_map(|&c| textures.iter().map(move |t| (c, t)))
+    {
         for kernel in [Kernel::Box, Kernel::Kaiser] {
             if kernel != Kernel::Box && content == environment {
                 continue;
