@@ -28,6 +28,15 @@ pub(super) struct Cascade {
     pub(super) linear: Vec<f32>,
 }
 
+/// Which levels a pass makes, and which of them it stores.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Pass {
+    /// The last, counted from level 0: it makes all from level 1 on.
+    pub(super) last: u32,
+    /// The first that is stored, 1 and more; none where it is beyond the last.
+    pub(super) first_stored: u32,
+}
+
 /// What is done to texels on their way in and out.
 pub(super) trait Rows: Sync {
     /// Row j of level 0 as it is averaged.
@@ -44,18 +53,21 @@ pub(super) fn levels_of_a_pass(size: UVec2, wanted: u32) -> u32 {
     halvings.min(wanted).min(MOST_LEVELS)
 }
 
-/// The first `count` levels of an 8-bit texture whose sides can be halved as often.
+/// The first levels of an 8-bit texture whose sides can be halved as often.
 pub(super) fn cascade(
     texture: &Texture,
     method: Method,
     schedule: Schedule,
-    count: u32,
+    pass: Pass,
     rows: &impl Rows,
 ) -> Cascade {
     let size = texture.size();
+    let count = pass.last;
+    let stored = pass.first_stored..=count;
     let channels = method.channels;
     let length = |level: u32| (size.x >> level) as usize * channels;
-    let mut codes: Vec<Vec<u8>> = (1..=count)
+    let mut codes: Vec<Vec<u8>> = stored
+        .clone()
         .map(|level| vec![0; length(level) * (size.y >> level) as usize])
         .collect();
     let mut linear = vec![0.0; length(count) * (size.y >> count) as usize];
@@ -70,7 +82,7 @@ pub(super) fn cascade(
             codes: Vec::with_capacity(codes.len()),
         })
         .collect();
-    for (level, codes) in (1..=count).zip(&mut codes) {
+    for (level, codes) in stored.clone().zip(&mut codes) {
         let rows_a_strip = 1usize << (count - level);
         for (strip, part) in strips
             .iter_mut()
@@ -83,7 +95,7 @@ pub(super) fn cascade(
         texture,
         method,
         rows,
-        count,
+        pass,
         decoder: Decoder::of(texture.format()),
     };
     schedule.for_each(
@@ -95,7 +107,7 @@ pub(super) fn cascade(
     );
 
     let format = texture.format();
-    let levels = (1..=count).zip(codes).map(|(level, codes)| {
+    let levels = stored.zip(codes).map(|(level, codes)| {
         Texture::new(
             size >> level,
             format.channels,
@@ -132,7 +144,7 @@ struct Maker<'a, R> {
     texture: &'a Texture,
     method: Method,
     rows: &'a R,
-    count: u32,
+    pass: Pass,
     decoder: Decoder,
 }
 
@@ -144,7 +156,7 @@ impl<R: Rows> Maker<'_, R> {
     fn scratch(&self) -> Scratch {
         Scratch {
             source: vec![0.0; 2 * self.length(0)],
-            rows: (1..=self.count)
+            rows: (1..=self.pass.last)
                 .map(|level| [(); 2].map(|()| vec![0.0; self.length(level)]))
                 .collect(),
             finished: vec![0.0; self.length(1)],
@@ -157,13 +169,14 @@ impl<R: Rows> Maker<'_, R> {
             linear,
             mut codes,
         } = strip;
-        let rows = 1u32 << (self.count - 1);
+        let count = self.pass.last;
+        let rows = 1u32 << (count - 1);
         for i in 0..rows {
             self.first_level(index * rows + i, scratch, i % 2);
             self.store(1, i, scratch, &mut codes);
             // A second row of a level makes one of the next.
             let (mut level, mut row) = (1, i);
-            while row % 2 == 1 && level < self.count {
+            while row % 2 == 1 && level < count {
                 let (finer, coarser) = scratch.rows.split_at_mut(level as usize);
                 let [above, below] = &finer[level as usize - 1];
                 let next = &mut coarser[0][(row / 2 % 2) as usize];
@@ -172,7 +185,7 @@ impl<R: Rows> Maker<'_, R> {
                 self.store(level, row, scratch, &mut codes);
             }
         }
-        linear.copy_from_slice(&scratch.rows[self.count as usize - 1][0]);
+        linear.copy_from_slice(&scratch.rows[count as usize - 1][0]);
     }
 
     fn encode(&self, linear: &[f32], out: &mut [u8]) {
@@ -199,12 +212,14 @@ impl<R: Rows> Maker<'_, R> {
         reduce_even(self.method, above, below, out);
     }
 
-    /// Rounds the row of `level` that was made last.
+    /// Rounds the row of `level` that was made last, if it is stored.
     fn store(&self, level: u32, row: u32, scratch: &mut Scratch, codes: &mut [&mut [u8]]) {
+        let Some(stored) = level.checked_sub(self.pass.first_stored) else {
+            return;
+        };
         let length = self.length(level);
-        let index = level as usize - 1;
-        let out = &mut codes[index][row as usize * length..][..length];
-        let made = &scratch.rows[index][(row % 2) as usize];
+        let out = &mut codes[stored as usize][row as usize * length..][..length];
+        let made = &scratch.rows[level as usize - 1][(row % 2) as usize];
         if self.rows.plain() {
             return self.encode(made, out);
         }
