@@ -21,7 +21,7 @@ const MAX_RMSE: f32 = 0.004;
 const MAX_DIFFERENCE: f32 = 0.02;
 
 /// The folder of shared assets, or a word on what is skipped.
-fn assets() -> Option<PathBuf> {
+pub(crate) fn assets() -> Option<PathBuf> {
     let folder = std::env::var_os("TEXRENDER_ASSETS").map(PathBuf::from);
     if folder.is_none() {
         println!("skipped: TEXRENDER_ASSETS is not set");
@@ -30,7 +30,7 @@ fn assets() -> Option<PathBuf> {
 }
 
 /// Every scene file below a folder, sorted.
-fn scenes(folder: &Path) -> Vec<PathBuf> {
+pub(crate) fn scenes(folder: &Path) -> Vec<PathBuf> {
     let mut found = Vec::new();
     for entry in std::fs::read_dir(folder).expect("the folder of TEXRENDER_ASSETS") {
         let path = entry.unwrap().path();

@@ -13,6 +13,7 @@ mod filtering;
 mod frontier;
 mod glb;
 mod hard_cases;
+mod levels;
 mod lighting;
 mod mappings;
 mod merging;

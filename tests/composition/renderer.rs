@@ -38,7 +38,7 @@ fn settings(eye: DVec3) -> Settings {
 }
 
 /// Everything that a film holds, to the bit.
-fn bits(film: &Film) -> Vec<u32> {
+pub(crate) fn bits(film: &Film) -> Vec<u32> {
     let mut bits = Vec::new();
     for (x, y) in (0..film.height()).flat_map(|y| (0..film.width()).map(move |x| (x, y))) {
         let pixel = film.pixel(x, y);

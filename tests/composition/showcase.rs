@@ -14,7 +14,7 @@ use texrender::{LoadOptions, Plan, Scene, Settings, View, load, mipmap, sampler,
 use crate::glb::film;
 
 #[path = "../../crates/texrender/examples/showcase/scene/mod.rs"]
-mod generator;
+pub(crate) mod generator;
 
 /// Cells of the golden, and pixels along a side of one.
 const GRID: (u32, u32) = (24, 14);
@@ -30,7 +30,7 @@ fn repository() -> PathBuf {
     PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../.."))
 }
 
-fn showcase() -> Scene {
+pub(crate) fn showcase() -> Scene {
     load(
         repository().join("assets/showcase.glb"),
         &LoadOptions::default(),

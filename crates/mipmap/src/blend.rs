@@ -18,15 +18,16 @@ impl Levels {
         }
     }
 
-    /// λ may be infinite, not NaN. `count` ≥ 1.
+    /// λ may be infinite, not NaN. `stored`: the finest level and the last.
     #[allow(
         clippy::cast_possible_truncation,
-        reason = "0 ≤ lod < count, and truncation is the floor of it"
+        reason = "0 ≤ lod ≤ last, and truncation is the floor of it"
     )]
-    pub(crate) fn at(lambda: f32, count: u32, state: &SamplerState) -> Self {
-        let lod = lambda.max(0.0).min((count - 1) as f32);
+    pub(crate) fn at(lambda: f32, stored: [u32; 2], state: &SamplerState) -> Self {
+        let [finest, last] = stored;
+        let lod = lambda.max(finest as f32).min(last as f32);
         match state.mip {
-            MipFilter::None => Self::one(0),
+            MipFilter::None => Self::one(finest),
             MipFilter::Nearest => {
                 // ⌈x⌉ − 1 for x = λ + ½ > 0: the floor, less one on the integers.
                 let above = lod + 0.5;
@@ -90,7 +91,7 @@ mod tests {
                 mip: MipFilter::Nearest,
                 ..SamplerState::default()
             };
-            Levels::at(lambda, 5, &state).fine
+            Levels::at(lambda, [0, 4], &state).fine
         };
         assert_eq!(
             [0.0, 0.5, 0.51, 1.5, 1.6, 9.0, -3.0].map(level),
@@ -100,7 +101,7 @@ mod tests {
 
     #[test]
     fn odd_lambda_is_clamped_to_the_levels() {
-        let linear = |lambda| Levels::at(lambda, 5, &SamplerState::default());
+        let linear = |lambda| Levels::at(lambda, [0, 4], &SamplerState::default());
         assert_eq!(
             linear(f32::INFINITY),
             Levels {
@@ -130,7 +131,7 @@ mod tests {
             mip_band: 0.5,
             ..SamplerState::default()
         };
-        let lod = |lambda| Levels::at(lambda, 5, &state).lod();
+        let lod = |lambda| Levels::at(lambda, [0, 4], &state).lod();
         let lambdas = [0.0, 1.0, 1.25, 1.375, 1.5, 1.75, 1.9, 3.9, 4.0];
         assert_eq!(
             lambdas.map(lod),
@@ -139,7 +140,7 @@ mod tests {
         // What is no band is trilinear filtering, or nearly a step.
         let odd = |mip_band| {
             let state = SamplerState { mip_band, ..state };
-            [1.3, 1.6].map(|lambda| Levels::at(lambda, 5, &state).lod())
+            [1.3, 1.6].map(|lambda| Levels::at(lambda, [0, 4], &state).lod())
         };
         assert_eq!(odd(f32::NAN), [1.3, 1.6]);
         assert_eq!(odd(9.0), [1.3, 1.6]);

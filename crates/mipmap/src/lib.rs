@@ -39,6 +39,9 @@
 //! pixel kernel of the probe line is a box along the major axis; across it, the tent of the trilinear lookup;
 //! [`ProbeWeights::Gaussian`] makes it a Gaussian. [`stochastic`] reads one texel of the same, right on average.
 //!
+//! # Only what a view reads: [`SamplerState::finest_level`], [`pyramid::PyramidOptions::finest`]
+//! From the least footprint of a view follows the finest level that it reads; finer ones need not be kept.
+//!
 //! # Sixteen at once: [`packet`]
 //! [`packet::Taps`] are [`sample`] at sixteen footprints, from a [`packet::PackedPyramid`];
 //! [`packet::ewa()`] is [`ewa()`], [`packet::automatic()`] is [`automatic()`].
@@ -75,6 +78,7 @@
 //! | [`sample`] of 8-bit texels in integers against the exact path | [`sampler::BILINEAR_FIXED_MAX_ERROR`] + 2e-5 | `tests/properties/filtering.rs` |
 //! | [`packet::Taps::sample`] against [`sample`] | 1e-3 of the texels' range, the same bits everywhere | `tests/properties/packet.rs` |
 //! | [`packet::ewa()`], [`packet::automatic()`] against [`ewa()`], [`automatic()`] | the same | `tests/properties/packet_ewa.rs`, `packet_automatic.rs` |
+//! | lookups without the levels finer than [`SamplerState::finest_level`] says | the same bits | `tests/properties/finest.rs` |
 //! | [`RipMap`] against its f64 kernel | 1e-5 of the texels' range | `tests/properties/rip_map.rs` |
 //! | [`SummedArea`] against the integral | 1e-6 of the texels' range | `tests/properties/summed_area.rs` |
 //! | continuity over derivatives | ≤ 1/255 per 1e-3 step | `tests/properties/filtering.rs` |
@@ -95,6 +99,7 @@ mod axis_box;
 mod blend;
 mod error;
 mod ewa;
+mod finest;
 mod footprint;
 mod lod;
 pub mod packet;

@@ -58,7 +58,7 @@ pub fn sample(pyramid: &Pyramid, state: &SamplerState, footprint: &Footprint) ->
 }
 
 /// As [`sample`], with the level of detail used: λ clamped to the stored levels, a whole number where one level was
-/// chosen, 0 where level 0 answered.
+/// chosen, 0 where level 0 answered (the finest, if that is not stored).
 pub fn sample_with_lod(
     pyramid: &Pyramid,
     state: &SamplerState,
@@ -95,7 +95,7 @@ impl Plan {
     #[inline]
     pub(crate) fn of(pyramid: &Pyramid, state: &SamplerState, footprint: &Footprint) -> Self {
         let magnified = Self {
-            levels: Levels::one(0),
+            levels: Levels::one(pyramid.finest()),
             filter: state.magnify,
             probes: None,
         };
@@ -141,7 +141,8 @@ impl Plan {
         } else {
             state.magnify
         };
-        let levels = Levels::at(lambda, pyramid.levels(), state);
+        let stored = [pyramid.finest(), pyramid.levels() - 1];
+        let levels = Levels::at(lambda, stored, state);
 
         // A level of one texel gives that texel wherever a probe stands.
         let bordered = state.address.modes.contains(&AddressMode::ClampToBorder);

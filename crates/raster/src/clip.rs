@@ -128,6 +128,15 @@ impl ClipVolume {
         (0..PLANES).any(beyond)
     }
 
+    /// Whether a corner lies beyond near, far or guard band, so that clipping makes new corners.
+    pub(crate) fn cuts(&self, corners: &[DVec4]) -> bool {
+        let beyond = |k: usize| {
+            let outside = |c: &DVec4| Self::distance(k, self.guard, *c) < 0.0;
+            corners.iter().any(outside)
+        };
+        (0..PLANES).any(beyond)
+    }
+
     /// The visible part of a triangle; fewer than three corners if there is none.
     pub(crate) fn clip_triangle(&self, clip: [DVec4; 3]) -> Polygon {
         let mut polygon = Polygon::triangle(clip);

@@ -51,6 +51,10 @@
 //! # Barycentrics
 //! [`Triangle::weights`] and [`Triangle::weights_at_samples`] give [`texcoord::Weights`] of the source primitive.
 //!
+//! # Footprints
+//! [`LeastFootprint`] bounds from below how far an attribute moves from pixel to pixel anywhere on a triangle: before
+//! anything is drawn, it tells which mip levels a view can touch.
+//!
 //! # Conventions
 //! Clip space is right-handed (x right, y up), visible where 0 ≤ z ≤ w; z/w is 1 at the near plane and 0 at the
 //! far end, infinity included. Fronts run counter-clockwise as seen. Pixel (0,0) is at the top left, centres at
@@ -62,6 +66,7 @@
 //! | coverage | exact for the snapped triangle |
 //! | snapping | half a unit, 1/512 pixel |
 //! | depth | 2⁻²⁴, within the range of the corners |
+//! | least footprint | a lower bound, within a percent where w changes little over a triangle |
 //! | weights | 8·2⁻⁵³ relative for the snapped triangle, any ratio of w |
 //!
 //! # Limits
@@ -87,6 +92,7 @@ mod edge;
 mod error;
 mod frame;
 mod layer;
+mod least_footprint;
 mod owners;
 mod packet;
 mod planes;
@@ -106,6 +112,7 @@ pub use bins::{Bins, Touch};
 pub use chunk::{CHUNK_TRIANGLES, Chunk, MeshPart};
 pub use error::Error;
 pub use frame::{Assembler, Frame, MAX_CHUNKS, Surface};
+pub use least_footprint::LeastFootprint;
 pub use owners::{OwnerRows, Owners};
 pub use packet::{PacketTriangles, SurfacePacket};
 pub use planes::{DepthFunction, Planes};

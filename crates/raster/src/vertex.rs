@@ -37,7 +37,7 @@ pub(crate) const BEYOND: u32 = 0b11_1111;
 pub(crate) const CLIPPED: u32 = 1 << 6;
 
 /// Adding it leaves the nearest integer, ties to even, in the low bits of the sum: 1.5·2⁵².
-const INTEGER: f64 = 6_755_399_441_055_744.0;
+pub(crate) const INTEGER: f64 = 6_755_399_441_055_744.0;
 
 /// Projects up to 16 vertices to the screen: the packet twin of what [`assemble_triangle`](crate::assemble_triangle)
 /// does to a corner, the same to the bit.

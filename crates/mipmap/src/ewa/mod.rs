@@ -157,7 +157,8 @@ pub fn ewa(
         return from_lattice(DVec4::ZERO).as_vec4();
     }
     let covariance = lengths.covariance(minor) * (SIGMA * SIGMA);
-    let colour = levels.blend(lod.clamp(0.0, last), st, covariance);
+    let finest = pyramid.finest() as f32;
+    let colour = levels.blend(lod.clamp(finest, last), st, covariance);
     if magnified > 0.0 {
         from_lattice(colour).as_vec4()
     } else {
@@ -174,7 +175,7 @@ struct Levels<'a> {
 }
 
 impl Levels<'_> {
-    /// `lod`: 0 to the last level. `covariance`: of the footprint, in texels of level 0.
+    /// `lod`: from the finest level to the last. `covariance`: of the footprint, in texels of level 0.
     #[allow(
         clippy::cast_possible_truncation,
         reason = "0 ≤ lod, and truncation is the floor of it"

@@ -58,16 +58,16 @@ impl<S: Simd> Course<S> {
         }
     }
 
-    /// Bilinear taps of level 0, wherever they are.
+    /// Bilinear taps of the finest level, wherever they are.
     #[inline(always)]
-    pub(super) fn of_level_0(simd: S, texture: &PackedPyramid) -> Self {
+    pub(super) fn of_the_finest(simd: S, texture: &PackedPyramid) -> Self {
         let zero = f32x16::splat(simd, 0.0);
         Self {
             simd,
             modes: texture.modes(),
             stride: texture.sheet().stride(),
             middle: [zero; 2],
-            placed: texture.placed(simd, zero),
+            placed: texture.placed(simd, f32x16::splat(simd, texture.stored()[0])),
             levels: 1,
             fraction: zero,
             split: Split::of(simd, texture, &SamplerState::default(), zero.simd_lt(zero)),

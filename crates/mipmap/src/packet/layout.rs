@@ -11,7 +11,7 @@ use crate::pyramid::Pyramid;
 /// A pyramid laid out for packets, under one pair of address modes.
 ///
 /// ```text
-///   ┌───────────┬──────┐      level 0 on the left, the coarser ones in a column beside it;
+///   ┌───────────┬──────┐      the finest level on the left, the coarser ones in a column beside it;
 ///   │           │  1   │      one stride, and places that follow from the level by a formula:
 ///   │     0     ├───┬──┘      sixteen lanes may read sixteen levels without a table
 ///   │           │ 2 │
@@ -19,11 +19,16 @@ use crate::pyramid::Pyramid;
 ///   └───────────┴─┘
 /// ```
 ///
-/// It takes 1.5 times the texels of level 0 where the pyramid takes 1.33, in the format of [`sampler::packet::SheetTexels`].
+/// It takes 1.5 times the texels of the finest level where the pyramid takes 1.33, in the format of
+/// [`sampler::packet::SheetTexels`]. Levels that the pyramid does not keep ([`Pyramid::finest`]) take no room.
 #[derive(Debug, Clone)]
 pub struct PackedPyramid {
     sheet: Sheet,
+    /// Of level 0, and of the finest level that is kept.
     size: UVec2,
+    finest_size: UVec2,
+    finest: u32,
+    /// One a level; those before the finest are where that is.
     places: Vec<Place>,
     modes: [AddressMode; 2],
     fraction_bits: u32,
@@ -33,36 +38,42 @@ impl PackedPyramid {
     /// Lays out a pyramid.
     #[must_use]
     pub fn new(pyramid: &Pyramid, address: &Addressing<2>) -> Self {
-        let (size, levels) = (pyramid.size(), pyramid.levels());
-        let beside = if levels > 1 {
-            (size.x / 2).max(1) + 2
-        } else {
+        let (finest, levels) = (pyramid.finest(), pyramid.levels());
+        let size = pyramid.level(finest).size();
+        let coarser = finest + 1..levels;
+        let beside = if coarser.is_empty() {
             0
+        } else {
+            (size.x / 2).max(1) + 2
         };
-        let rows = (1..levels).fold(size.y + 2, |rows, level| {
-            rows.max(first_row(size.y, level) + pyramid.level(level).size().y + 2)
+        let rows = coarser.fold(size.y + 2, |rows, level| {
+            let first = first_row(size.y, level - finest);
+            rows.max(first + pyramid.level(level).size().y + 2)
         });
         let stride = size.x + 2 + beside;
-        let mut sheet = Sheet::new(pyramid.level(0), address, stride, rows);
-        let fraction_bits = fraction_bits(size);
+        let mut sheet = Sheet::new(pyramid.level(finest), address, stride, rows);
+        let fraction_bits = fraction_bits(pyramid.size());
         let units = (1u32 << fraction_bits) as f32;
         let mut places = Vec::new();
-        for level in 0..levels {
-            let corner = match level {
+        for level in finest..levels {
+            let corner = match level - finest {
                 0 => UVec2::ZERO,
-                _ => UVec2::new(size.x + 2, first_row(size.y, level)),
+                below => UVec2::new(size.x + 2, first_row(size.y, below)),
             };
             let texture = pyramid.level(level);
             sheet.put(texture, address, corner);
-            places.push(Place {
+            let place = Place {
                 width: texture.size().x as f32 * units,
                 height: texture.size().y as f32 * units,
                 origin: corner.y * stride + corner.x,
-            });
+            };
+            places.resize(level as usize + 1, place);
         }
         Self {
             sheet,
-            size,
+            size: pyramid.size(),
+            finest_size: size,
+            finest,
             places,
             modes: address.modes,
             fraction_bits,
@@ -76,11 +87,24 @@ impl PackedPyramid {
         self.size
     }
 
-    /// The number of levels, at least 1.
+    /// The number of levels, at least 1; those finer than [`Self::finest`] count.
     #[inline]
     #[must_use]
     pub fn levels(&self) -> u32 {
         u32::try_from(self.places.len()).unwrap_or(u32::MAX)
+    }
+
+    /// The finest level that is kept: lookups hold λ to it and more.
+    #[inline]
+    #[must_use]
+    pub fn finest(&self) -> u32 {
+        self.finest
+    }
+
+    /// The finest level and the last.
+    #[inline(always)]
+    pub(super) fn stored(&self) -> [f32; 2] {
+        [self.finest as f32, (self.places.len() - 1) as f32]
     }
 
     /// Bytes that the texels take.
@@ -99,10 +123,11 @@ impl PackedPyramid {
         (reduced(self.modes[0], s), reduced(self.modes[1], t))
     }
 
-    /// Whether the taps of one are those of the other: the same size, levels and address modes.
+    /// Whether the taps of one are those of the other: the same size, levels, finest of them and address modes.
     #[must_use]
     pub fn is_alike(&self, other: &Self) -> bool {
-        let shape = |of: &Self| (of.size, of.places.len(), of.modes, of.sheet.stride());
+        let levels = |of: &Self| (of.finest, of.places.len());
+        let shape = |of: &Self| (of.size, levels(of), of.modes, of.sheet.stride());
         shape(self) == shape(other)
     }
 
@@ -130,7 +155,7 @@ fn reduced<S: Simd>(mode: AddressMode, coordinate: [f64x8<S>; 2]) -> f32x16<S> {
     }
 }
 
-/// The row of a level k ≥ 1 on the sheet, in a texture of `height` rows: ⌊h − h/2ᵏ⁻¹⌋ + 4(k − 1), in f32.
+/// The row of the level k ≥ 1 below the finest on the sheet, where that has `height` rows: ⌊h − h/2ᵏ⁻¹⌋ + 4(k − 1), in f32.
 ///
 /// From one to the next it grows by at least ⌊h/2ᵏ⌋ + 2 and by at least 3: room for the level and its ring.
 #[allow(
@@ -177,7 +202,8 @@ impl Place {
 }
 
 impl PackedPyramid {
-    /// Where each lane's level lies, a whole number below [`Self::levels`], and the next coarser one, if there is one.
+    /// Where each lane's level lies, a whole number from [`Self::finest`] on and below [`Self::levels`], and the next
+    /// coarser one, if there is one.
     #[inline(always)]
     pub(super) fn placed<S: Simd>(&self, simd: S, level: f32x16<S>) -> [Placed<S>; 2] {
         let first = level[0];
@@ -199,18 +225,19 @@ impl PackedPyramid {
     /// Where levels lie that differ from lane to lane.
     #[inline(always)]
     fn placed_each<S: Simd>(&self, simd: S, level: f32x16<S>) -> Placed<S> {
-        // 2⁻ᵏ by its exponent.
         let w = f32x16::splat(simd, self.size.x as f32);
         let h = f32x16::splat(simd, self.size.y as f32);
         let one = f32x16::splat(simd, 1.0);
         let index = u32x16::truncate_from(level);
-        let exponent = u32x16::splat(simd, 127) - index;
-        let part: f32x16<S> = (exponent << 23).bitcast();
-        let base = index.simd_eq(u32x16::splat(simd, 0));
-        let row = (h - h * part * 2.0).floor() + (level * 4.0 - 4.0);
+        let part = inverse_power(simd, index);
+        let below = index - self.finest;
+        let base = below.simd_eq(u32x16::splat(simd, 0));
+        let rows = f32x16::splat(simd, self.finest_size.y as f32);
+        let steps = level * 4.0 - (self.finest as f32 * 4.0 + 4.0);
+        let row = (rows - rows * inverse_power(simd, below) * 2.0).floor() + steps;
         let units = (1u32 << self.fraction_bits) as f32;
         let beside = u32x16::truncate_from(row.max(f32x16::splat(simd, 0.0))) * self.sheet.stride()
-            + (self.size.x + 2);
+            + (self.finest_size.x + 2);
         Placed {
             width: (w * part).floor().max(one) * units,
             height: (h * part).floor().max(one) * units,
@@ -223,6 +250,12 @@ impl PackedPyramid {
     pub(super) fn fraction_bits(&self) -> u32 {
         self.fraction_bits
     }
+}
+
+/// 2⁻ᵏ by its exponent.
+#[inline(always)]
+fn inverse_power<S: Simd>(simd: S, k: u32x16<S>) -> f32x16<S> {
+    ((u32x16::splat(simd, 127) - k) << 23).bitcast()
 }
 
 fn fraction_bits(size: UVec2) -> u32 {

@@ -59,7 +59,7 @@ impl<S: Simd> Plan<S> {
         let one_level = texture.levels() == 1 || state.mip == MipFilter::None;
         if one_level && state.magnify == state.minify && max_anisotropy == 1.0 {
             return Self {
-                fine: zero,
+                fine: f32x16::splat(simd, texture.stored()[0]),
                 fraction: zero,
                 minified: zero.simd_eq(one),
                 eta: one,
@@ -219,11 +219,12 @@ fn levels<S: Simd>(
     lambda: f32x16<S>,
 ) -> (f32x16<S>, f32x16<S>) {
     let zero = f32x16::splat(simd, 0.0);
-    let last = f32x16::splat(simd, (texture.levels() - 1) as f32);
-    let lod = lambda.max(zero).min(last);
+    let [finest, last] = texture.stored();
+    let (finest, last) = (f32x16::splat(simd, finest), f32x16::splat(simd, last));
+    let lod = lambda.max(finest).min(last);
     match state.mip {
-        MipFilter::None => (zero, zero),
-        MipFilter::Nearest => (((lod + 0.5).ceil() - 1.0).max(zero), zero),
+        MipFilter::None => (finest, zero),
+        MipFilter::Nearest => (((lod + 0.5).ceil() - 1.0).max(finest), zero),
         MipFilter::Linear => {
             let fine = lod.floor();
             let fraction = lod - fine;

@@ -16,8 +16,9 @@ use crate::error::Error;
 
 /// The levels of a texture after level 0, each made when it is asked for.
 ///
-/// Ends after the level of one texel, or after as many as the options ask for. [`super::Pyramid::build_with`]
-/// collects it; a caller that writes levels to a file, or needs only the first few, need not.
+/// Begins with level 1, or with the finest that the options keep if that is coarser; ends after the level of one texel,
+/// or after as many as the options ask for. [`super::Pyramid::build_with`] collects it; a caller that writes levels to
+/// a file, or needs only the first few, need not.
 ///
 /// # Examples
 /// ```
@@ -38,7 +39,11 @@ pub struct Levels<'a> {
     made: VecDeque<Texture>,
     /// Unrounded texels of the level made last; none before the first.
     linear: Option<Vec<f32>>,
-    remaining: u32,
+    finest: u32,
+    /// The next level.
+    next: u32,
+    /// One more than the last.
+    end: u32,
 }
 
 impl<'a> Levels<'a> {
@@ -69,8 +74,27 @@ impl<'a> Levels<'a> {
             size: texture.size(),
             linear: None,
             made: VecDeque::new(),
-            remaining: asked - 1,
+            finest: options.finest.min(asked - 1),
+            next: 1,
+            end: asked,
         })
+    }
+
+    /// The finest level that is kept.
+    pub(super) fn finest(&self) -> u32 {
+        self.finest
+    }
+
+    /// The unrounded texels of the next level, from those of the one before.
+    fn reduce(&mut self) -> Vec<f32> {
+        let target = halved(self.size);
+        let linear = self.linear.as_deref();
+        let next = self
+            .reduction
+            .reduce(self.texture, linear, self.size, target);
+        self.size = target;
+        self.next += 1;
+        next
     }
 }
 
@@ -78,31 +102,35 @@ impl Iterator for Levels<'_> {
     type Item = Texture;
 
     fn next(&mut self) -> Option<Texture> {
-        self.remaining = self.remaining.checked_sub(1)?;
-        if self.linear.is_none() {
-            let cascade = self.reduction.cascade(self.texture, self.remaining + 1);
-            if let Some(cascade) = cascade {
-                self.size = cascade.levels.last().map_or(self.size, Texture::size);
-                self.made = cascade.levels.into();
-                self.linear = Some(cascade.linear);
-            }
-        }
         if let Some(level) = self.made.pop_front() {
             return Some(level);
         }
-        let target = halved(self.size);
-        let linear = self.linear.as_deref();
-        let next = self
-            .reduction
-            .reduce(self.texture, linear, self.size, target);
-        self.size = target;
-        let level = self.reduction.store(target, &next);
+        if self.linear.is_none() && self.next < self.end {
+            let (wanted, first_stored) = (self.end - self.next, self.finest.max(1));
+            let made = self.reduction.cascade(self.texture, wanted, first_stored);
+            if let Some(cascade) = made {
+                self.size = cascade.last_size;
+                self.next += cascade.last;
+                self.made = cascade.levels.into();
+                self.linear = Some(cascade.linear);
+                return self.next();
+            }
+        }
+        while self.next < self.finest {
+            self.linear = Some(self.reduce());
+        }
+        if self.next >= self.end {
+            return None;
+        }
+        let next = self.reduce();
+        let level = self.reduction.store(self.size, &next);
         self.linear = Some(next);
         Some(level)
     }
 
     fn size_hint(&self) -> (usize, Option<usize>) {
-        let remaining = self.remaining as usize;
+        let to_come = self.end - self.next.max(self.finest);
+        let remaining = self.made.len() + to_come as usize;
         (remaining, Some(remaining))
     }
 }
@@ -169,7 +197,8 @@ impl Reduction {
     }
 
     /// The first levels in one pass, of at most `wanted`; `None` where that is not worth it, or needs whole levels.
-    fn cascade(&self, texture: &Texture, wanted: u32) -> Option<Cascade> {
+    /// `first_stored`: as that of [`strips::Levels`].
+    fn cascade(&self, texture: &Texture, wanted: u32, first_stored: u32) -> Option<Cascade> {
         let by_rows = self.format.component == Component::U8
             && self.method.chart.is_none()
             && self.coverage.is_none();
@@ -182,7 +211,11 @@ impl Reduction {
                 reduction: self,
                 texture,
             };
-            let levels = strips::Levels { texture, count };
+            let levels = strips::Levels {
+                texture,
+                count,
+                first_stored,
+            };
             match self.wide() {
                 None => cascade::cascade(&levels, self.method, self.options.schedule, &rows),
                 Some(wide) => wide.cascade(&levels, self.options.schedule, &rows),

@@ -48,7 +48,11 @@ pub const WIDE_KERNEL_U8_ERROR: f32 = 4e-6;
 #[derive(Debug, Clone)]
 #[doc(alias = "mipmap")]
 pub struct Pyramid {
+    /// From the finest that is kept on.
     levels: Vec<Texture>,
+    /// Of level 0.
+    size: UVec2,
+    finest: u32,
     /// Of heights alone.
     bounds: Option<Bounds>,
 }
@@ -60,6 +64,9 @@ pub struct PyramidOptions {
     pub kernel: Kernel,
     /// How many levels, level 0 included; `None` for all down to 1×1.
     pub levels: Option<u32>,
+    /// The finest level that is kept, for a view that reads none finer: those are made and let go. At most the last.
+    /// Numbers, sizes and texels of the others stay what they are; lookups hold λ to this and more.
+    pub finest: u32,
     /// What becomes of what negative lobes leave outside the texture's range. The box has none.
     pub negative_lobes: NegativeLobes,
     /// What a wide kernel finds beyond the border, in s and in t. The box does not look there. Under
@@ -143,17 +150,31 @@ impl Pyramid {
         content: Content,
         options: &PyramidOptions,
     ) -> Result<Self, Error> {
-        let coarser: Vec<Texture> = Levels::new(&texture, content, options)?.collect();
-        let bounds = (content == Content::Height).then(|| Bounds::of(&texture, coarser.len() + 1));
-        let mut levels = vec![texture];
+        let coarser = Levels::new(&texture, content, options)?;
+        let finest = coarser.finest();
+        let coarser: Vec<Texture> = coarser.collect();
+        let size = texture.size();
+        let count = finest.saturating_sub(1) as usize + coarser.len() + 1;
+        let bounds = (content == Content::Height).then(|| Bounds::of(&texture, count));
+        let mut levels = Vec::with_capacity(coarser.len() + 1);
+        if finest == 0 {
+            levels.push(texture);
+        }
         levels.extend(coarser);
-        Ok(Self { levels, bounds })
+        Ok(Self {
+            levels,
+            size,
+            finest,
+            bounds,
+        })
     }
 
     /// Level 0 alone, for a texture whose sampler asks for no mip levels.
     pub fn single(texture: Texture) -> Self {
         Self {
+            size: texture.size(),
             levels: vec![texture],
+            finest: 0,
             bounds: None,
         }
     }
@@ -192,20 +213,29 @@ impl Pyramid {
             }
         }
         Ok(Self {
+            size: first.size(),
             levels,
+            finest: 0,
             bounds: None,
         })
     }
 
-    /// The number of levels, at least 1.
+    /// The number of levels, at least 1; those finer than [`Self::finest`] count.
     pub fn levels(&self) -> u32 {
-        u32::try_from(self.levels.len()).unwrap_or(u32::MAX)
+        u32::try_from(self.levels.len()).map_or(u32::MAX, |kept| self.finest + kept)
     }
 
-    /// Level `level`, 0 the finest. Beyond the last it is the last.
+    /// The finest level that is kept: 0, unless [`PyramidOptions::finest`] said otherwise.
+    #[inline]
+    pub fn finest(&self) -> u32 {
+        self.finest
+    }
+
+    /// Level `level`, 0 the texture itself. Beyond the last it is the last, before the finest that is kept it is that.
     #[inline]
     pub fn level(&self, level: u32) -> &Texture {
-        &self.levels[(level as usize).min(self.levels.len() - 1)]
+        let kept = level.saturating_sub(self.finest) as usize;
+        &self.levels[kept.min(self.levels.len() - 1)]
     }
 
     /// The least and the greatest height of the level-0 texels that share area with texel `ij` of `level`.
@@ -231,10 +261,10 @@ impl Pyramid {
 
     /// Width and height of level 0, in texels.
     pub fn size(&self) -> UVec2 {
-        self.levels[0].size()
+        self.size
     }
 
-    /// Bytes that the texels of all levels take, and the bounds of heights.
+    /// Bytes that the texels of all levels that are kept take, and the bounds of heights.
     pub fn byte_len(&self) -> usize {
         let texels: usize = self.levels.iter().map(Texture::byte_len).sum();
         texels + self.bounds.as_ref().map_or(0, Bounds::byte_len)

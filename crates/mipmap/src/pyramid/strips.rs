@@ -9,10 +9,14 @@ use sampler::{Format, Texels, Texture};
 
 use super::rows::Schedule;
 
-/// Levels of one texture, and the unrounded texels of the last of them.
+/// Levels of one texture, and the last of them unrounded.
 pub(super) struct Cascade {
+    /// Those that are stored.
     pub(super) levels: Vec<Texture>,
+    /// Texels of the last.
     pub(super) linear: Vec<f32>,
+    pub(super) last: u32,
+    pub(super) last_size: UVec2,
 }
 
 /// What is done to texels on their way in and out.
@@ -30,6 +34,8 @@ pub(super) struct Levels<'a> {
     pub(super) texture: &'a Texture,
     /// How many, at least 1; both sides can be halved exactly as often, or it is 1.
     pub(super) count: u32,
+    /// The first that is stored, 1 and more; none where it is beyond the last.
+    pub(super) first_stored: u32,
 }
 
 impl Levels<'_> {
@@ -52,7 +58,9 @@ impl Levels<'_> {
         make: impl Fn(&mut S, &mut Strip<'_>) + Sync,
     ) -> Cascade {
         let components = |level| self.length(level) * self.size(level).y as usize;
-        let mut codes: Vec<Vec<u8>> = (1..=self.count)
+        let stored = self.first_stored..=self.count;
+        let mut codes: Vec<Vec<u8>> = stored
+            .clone()
             .map(|level| vec![0; components(level)])
             .collect();
         let mut linear = vec![0.0; components(self.count)];
@@ -61,7 +69,7 @@ impl Levels<'_> {
             make(scratch, &mut strip)
         });
         let format = self.texture.format();
-        let levels = (1..=self.count).zip(codes).map(|(level, codes)| {
+        let levels = stored.zip(codes).map(|(level, codes)| {
             let (size, texels) = (self.size(level), Texels::U8(codes));
             Texture::new(size, format.channels, format.transfer, texels)
                 .expect("as many codes as the size asks for")
@@ -70,6 +78,8 @@ impl Levels<'_> {
         Cascade {
             levels: levels.collect(),
             linear,
+            last: self.count,
+            last_size: self.size(self.count),
         }
     }
 
@@ -87,11 +97,13 @@ impl Levels<'_> {
                 format: self.texture.format(),
                 rows: begin..(begin + rows).min(last_rows),
                 linear,
+                last: self.count,
+                first_stored: self.first_stored,
                 codes: Vec::with_capacity(codes.len()),
                 finished: Vec::new(),
             })
             .collect();
-        for (level, codes) in (1..=self.count).zip(codes) {
+        for (level, codes) in (self.first_stored..=self.count).zip(codes) {
             let part = self.length(level) * ((rows as usize) << (self.count - level));
             for (strip, part) in strips.iter_mut().zip(codes.chunks_mut(part)) {
                 strip.codes.push(part);
@@ -107,6 +119,8 @@ pub(super) struct Strip<'a> {
     /// Of the last level.
     rows: Range<u32>,
     linear: &'a mut [f32],
+    last: u32,
+    first_stored: u32,
     codes: Vec<&'a mut [u8]>,
     finished: Vec<f32>,
 }
@@ -114,21 +128,24 @@ pub(super) struct Strip<'a> {
 impl Strip<'_> {
     /// The strip's rows of `level`.
     pub(super) fn rows(&self, level: u32) -> Range<u32> {
-        let halvings = u32::try_from(self.codes.len()).unwrap_or(u32::MAX) - level;
+        let halvings = self.last - level;
         self.rows.start << halvings..self.rows.end << halvings
     }
 
-    /// Rounds row j of `level` to codes; one that is not the strip's is left to its neighbour.
+    /// Rounds row j of `level` to codes, if the level is stored; one that is not the strip's is left to its neighbour.
     pub(super) fn store(&mut self, level: u32, j: u32, row: &[f32], rows: &impl Rows) {
         let own = self.rows(level);
         if !own.contains(&j) {
             return;
         }
         let place = (j - own.start) as usize * row.len()..(j - own.start + 1) as usize * row.len();
-        if level as usize == self.codes.len() {
+        if level == self.last {
             self.linear[place.clone()].copy_from_slice(row);
         }
-        let out = &mut self.codes[level as usize - 1][place];
+        let Some(stored) = level.checked_sub(self.first_stored) else {
+            return;
+        };
+        let out = &mut self.codes[stored as usize][place];
         let channels = usize::from(self.format.channels);
         if rows.plain() {
             return encode_u8(self.format.transfer, channels, row, out);

@@ -11,6 +11,7 @@ mod content;
 mod coverage;
 mod ewa;
 mod filtering;
+mod finest;
 mod footprint;
 mod kernels;
 mod lod;

@@ -10,6 +10,7 @@ mod clip;
 mod coverage;
 mod frame;
 mod interpolation;
+mod least_footprint;
 mod oracle;
 mod samples;
 mod shared_edges;

@@ -2,9 +2,20 @@
 
 use std::fmt::{self, Write};
 
-use super::{Coverage, Plan, PyramidNeed};
+use super::{Coverage, Plan, PyramidNeed, TextureNeed};
 use crate::scene::{AlphaMode, Scene};
 use crate::settings::EnvironmentSource;
+
+/// Which levels of a texture are kept.
+fn levels(need: &TextureNeed) -> String {
+    match (need.pyramid, need.finest, need.levels()) {
+        (PyramidNeed::None, ..) => "no mip levels (its filter uses none)".to_owned(),
+        (PyramidNeed::Full, 0, all) => format!("with {all} mip levels"),
+        (PyramidNeed::Full, finest, all) => {
+            format!("with mip levels {finest}.. of {all} (the view touches no finer)")
+        }
+    }
+}
 
 /// What a scene holds, in a few lines.
 #[must_use]
@@ -114,10 +125,7 @@ impl Plan {
                 need.size.x,
                 need.size.y,
                 need.role,
-                match need.pyramid {
-                    PyramidNeed::None => "no mip levels (its filter uses none)",
-                    PyramidNeed::Full => "with mip levels",
-                },
+                levels(need),
                 need.reasons.join(", ")
             )?;
         }

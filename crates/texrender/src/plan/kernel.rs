@@ -1,6 +1,7 @@
 //! The smallest kernel that serves a surface.
 
 use glam::{Vec3, Vec4};
+use raster::Cull;
 
 use super::map::Map;
 use super::shown::Shown;
@@ -56,6 +57,16 @@ pub enum Sidedness {
     Single,
     /// Both; the back with its normal turned.
     Double,
+}
+
+impl Sidedness {
+    /// What assembly leaves out.
+    pub(crate) fn cull(self) -> Cull {
+        match self {
+            Self::Single => Cull::Back,
+            Self::Double => Cull::None,
+        }
+    }
 }
 
 /// Whether normals are interpolated over a surface.
@@ -131,6 +142,29 @@ impl Kernel {
     #[must_use]
     pub fn is_lit(&self) -> bool {
         matches!(self.lighting, Lighting::Lit(_))
+    }
+
+    /// All its maps.
+    pub(crate) fn maps(&self) -> impl Iterator<Item = &Map> {
+        let mut all = vec![self.base_color_map.as_ref(), self.emissive_map.as_ref()];
+        if let Lighting::Lit(lit) = &self.lighting {
+            all.push(lit.normal.as_ref().map(|(map, _, _)| map));
+            all.push(lit.occlusion.as_ref().map(|(map, _)| map));
+            match &lit.reflectance {
+                Reflectance::MetallicRoughness {
+                    map,
+                    specular_map,
+                    specular_color_map,
+                    ..
+                } => all.extend([
+                    map.as_ref(),
+                    specular_map.as_ref(),
+                    specular_color_map.as_ref(),
+                ]),
+                Reflectance::SpecularGlossiness { map, .. } => all.push(map.as_ref()),
+            }
+        }
+        all.into_iter().flatten()
     }
 }
 

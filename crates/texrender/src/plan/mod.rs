@@ -8,6 +8,7 @@ mod describe;
 mod environment;
 mod filter;
 mod kernel;
+mod levels;
 mod map;
 mod shown;
 mod texture;
@@ -115,7 +116,8 @@ pub struct TangentNeed {
 }
 
 impl Plan {
-    /// What a picture of `scene` needs.
+    /// What a picture of `scene` needs, from its view alone: of each texture no level finer than what the view can
+    /// touch.
     ///
     /// Opens the images that visible materials use far enough to read their size; decodes nothing.
     ///
@@ -157,6 +159,9 @@ impl Plan {
         texture::measure(scene, &mut plan)?;
         volume::measure(scene, &mut plan)?;
         shown::measure(scene, &mut plan)?;
+        if culling == Culling::ByView {
+            levels::leave_out_untouched(scene, &mut plan);
+        }
         if plan.kernels.iter().any(Kernel::is_lit) {
             plan.lights.clone_from(&scene.lights);
         }
@@ -177,7 +182,7 @@ impl Plan {
             .filter(|need| need.readers == Readers::Pixels);
         let kept: u64 = kept.map(TextureNeed::bytes).sum();
         let passing = pyramids.filter(|need| need.readers == Readers::Packets);
-        let passing = passing.map(TextureNeed::bytes).max().unwrap_or(0);
+        let passing = passing.map(TextureNeed::whole_bytes).max().unwrap_or(0);
         let sheets = self.sheets.iter();
         let sheets: u64 = sheets.map(|need| need.bytes(&self.textures)).sum();
         let volumes: u64 = self.volumes.iter().map(VolumeNeed::bytes).sum();

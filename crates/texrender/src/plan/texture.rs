@@ -18,6 +18,8 @@ pub struct TextureNeed {
     pub role: TextureRole,
     /// Whether mip levels are built.
     pub pyramid: PyramidNeed,
+    /// The finest level that is kept: what no pixel of the view can touch is left out.
+    pub finest: u32,
     /// Size in texels, from its header.
     pub size: UVec2,
     /// Bytes of a decoded texel.
@@ -133,6 +135,7 @@ impl TextureNeed {
                 image,
                 role,
                 pyramid,
+                finest: 0,
                 size: UVec2::ZERO,
                 texel_bytes: 0,
                 readers: Readers::Packets,
@@ -149,19 +152,43 @@ impl TextureNeed {
         index
     }
 
-    /// Bytes that it takes once decoded, with its levels.
+    /// The number of its levels, those that are left out too.
+    #[must_use]
+    pub fn levels(&self) -> u32 {
+        match self.pyramid {
+            PyramidNeed::None => 1,
+            PyramidNeed::Full => self.size.max_element().max(1).ilog2() + 1,
+        }
+    }
+
+    /// Bytes that it takes once decoded, with the levels that are kept.
     #[must_use]
     pub fn bytes(&self) -> u64 {
-        let level0 = u64::from(self.size.x) * u64::from(self.size.y) * self.texel_bytes;
+        self.bytes_from(self.finest)
+    }
+
+    /// Bytes that it takes while it is made: all its levels.
+    #[must_use]
+    pub fn whole_bytes(&self) -> u64 {
+        self.bytes_from(0)
+    }
+
+    fn bytes_from(&self, level: u32) -> u64 {
+        let finest = self.texels_of(level) * self.texel_bytes;
         match self.pyramid {
-            PyramidNeed::None => level0,
-            PyramidNeed::Full => level0 + level0 / 3,
+            PyramidNeed::None => finest,
+            PyramidNeed::Full => finest + finest / 3,
         }
+    }
+
+    fn texels_of(&self, level: u32) -> u64 {
+        let side = |texels: u32| u64::from((texels >> level).max(1));
+        side(self.size.x) * side(self.size.y)
     }
 }
 
 impl SheetNeed {
-    /// Bytes that it takes: half as many texels again as level 0, of four channels in the least format that holds
+    /// Bytes that it takes: half as many texels again as the finest level, of four channels in the least format that holds
     /// them.
     #[must_use]
     pub fn bytes(&self, textures: &[TextureNeed]) -> u64 {
@@ -177,10 +204,10 @@ impl SheetNeed {
             ..=8 => 8,
             _ => 16,
         };
-        let level0 = u64::from(texture.size.x) * u64::from(texture.size.y) * texel;
+        let finest = texture.texels_of(texture.finest) * texel;
         match texture.pyramid {
-            PyramidNeed::None => level0,
-            PyramidNeed::Full => level0 + level0 / 2,
+            PyramidNeed::None => finest,
+            PyramidNeed::Full => finest + finest / 2,
         }
     }
 }

@@ -48,6 +48,8 @@ pub struct PrepareCounts {
     pub texture_bytes: usize,
     /// Textures with mip levels.
     pub pyramids_built: usize,
+    /// Finest levels of those that were not kept, because the view cannot touch them.
+    pub levels_left_out: usize,
     /// Meshes whose tangents were generated.
     pub tangents_built: usize,
     /// Corners of those meshes whose tangent does not follow from the mesh.
@@ -100,6 +102,7 @@ pub fn prepare(scene: &Scene, plan: &Plan) -> Result<Resources, Error> {
             .sum::<usize>()
             + sheets.iter().map(PackedPyramid::byte_len).sum::<usize>(),
         pyramids_built: built,
+        levels_left_out: plan.textures.iter().map(|need| need.finest as usize).sum(),
         tangents_built: generated.len(),
         tangent_fallbacks: generated.iter().map(|t| t.fallbacks).sum(),
         environment_tables_built: environment.as_ref().map_or(0, Environment::tables),
@@ -249,6 +252,7 @@ fn pyramid(need: &TextureNeed, picture: image::DynamicImage, name: &str) -> Resu
     };
     let options = PyramidOptions {
         schedule: Schedule::CurrentPool,
+        finest: need.finest,
         ..PyramidOptions::default()
     };
     match need.pyramid {

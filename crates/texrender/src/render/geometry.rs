@@ -2,12 +2,12 @@
 
 use glam::DVec4;
 use raster::{
-    Bins, Cull, SamplePattern, TILE_SIZE, TileGrid, Touch, Triangle, Viewport, assemble_line,
+    Bins, SamplePattern, TILE_SIZE, TileGrid, Touch, Triangle, Viewport, assemble_line,
     assemble_point, assemble_triangle,
 };
 use rayon::prelude::*;
 
-use crate::plan::{Coverage, Draw, Plan, Sidedness};
+use crate::plan::{Coverage, Draw, Plan};
 use crate::scene::{Scene, Topology};
 
 /// Vertices that one task takes.
@@ -192,10 +192,7 @@ impl Part {
     fn assemble(&mut self, scene: &Scene, plan: &Plan, clip: &[DVec4], viewport: &Viewport) {
         self.triangles.clear();
         let draw = &plan.draws[self.draw];
-        let cull = match plan.kernels[draw.kernel].sidedness {
-            Sidedness::Single => Cull::Back,
-            Sidedness::Double => Cull::None,
-        };
+        let cull = plan.kernels[draw.kernel].sidedness.cull();
         let at = |v: u32| clip[self.first_vertex + v as usize];
         let out = &mut self.triangles;
         let indices = scene.primitives[draw.primitive].indices[self.start..].iter();

@@ -3,7 +3,7 @@
 use mipmap::packet::PackedPyramid;
 
 use super::textures::SharedTaps;
-use crate::plan::{Curvature, Kernel, Lighting, Map, Reflectance, TangentSource};
+use crate::plan::{Curvature, Kernel, Lighting, TangentSource};
 use crate::scene::Coordinates;
 
 /// Rows of four that hold the edge functions and 1/w.
@@ -84,7 +84,7 @@ impl Layout {
         if wants.values {
             layout.sets.push(0);
         }
-        for map in maps(kernel) {
+        for map in kernel.maps() {
             layout.read_coordinates(kernel, map.coordinates);
             layout.shared.add(map, sheets);
         }
@@ -163,27 +163,4 @@ impl Layout {
     pub(super) fn color_row(&self) -> usize {
         self.tangent_row() + if self.tangents.is_some() { 3 } else { 0 }
     }
-}
-
-/// All maps of a kernel.
-fn maps(kernel: &Kernel) -> impl Iterator<Item = &Map> {
-    let mut all = vec![kernel.base_color_map.as_ref(), kernel.emissive_map.as_ref()];
-    if let Lighting::Lit(lit) = &kernel.lighting {
-        all.push(lit.normal.as_ref().map(|(map, _, _)| map));
-        all.push(lit.occlusion.as_ref().map(|(map, _)| map));
-        match &lit.reflectance {
-            Reflectance::MetallicRoughness {
-                map,
-                specular_map,
-                specular_color_map,
-                ..
-            } => all.extend([
-                map.as_ref(),
-                specular_map.as_ref(),
-                specular_color_map.as_ref(),
-            ]),
-            Reflectance::SpecularGlossiness { map, .. } => all.push(map.as_ref()),
-        }
-    }
-    all.into_iter().flatten()
 }

@@ -19,8 +19,8 @@ use crate::settings::TileOrder;
 ///
 /// What does not depend on the viewpoint is done once: images, pyramids, tangents and environment are in the
 /// resources, the film and the memory of tiles are used again. Each frame culls the plan's instances anew, so the
-/// plan should be [`Plan::for_any_view`]; that of [`Plan::new`] lists only what its own view sees, and nothing else
-/// is drawn.
+/// plan should be [`Plan::for_any_view`]; that of [`Plan::new`] lists only what its own view sees, nothing else
+/// is drawn, and textures are no finer than that view asks for.
 ///
 /// A frame is, to the bit, what [`render`](super::render) makes of a plan for its viewpoint, whenever both plans ask
 /// for the same environment levels.

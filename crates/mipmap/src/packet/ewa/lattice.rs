@@ -61,7 +61,7 @@ impl<S: Simd> Lattice<S> {
         texels: &[A::Texel],
         [s, t]: [f32x16<S>; 2],
     ) -> [f32x16<S>; 4] {
-        let course = Course::of_level_0(simd, texture);
+        let course = Course::of_the_finest(simd, texture);
         let stride = texture.sheet().stride() as usize;
         let mut taps = [Tap::NONE];
         let reach = f32x16::splat(simd, self.cut * self.cut * (1.0 / 16.0));

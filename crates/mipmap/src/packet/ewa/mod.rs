@@ -121,7 +121,7 @@ impl<'a, S: Simd, T> Averages<'a, S, T> {
     fn blend<A: Sums<S, Texel = T>>(&self, active: mask32x16<S>) -> [f32x16<S>; 4] {
         let zero = f32x16::splat(self.simd, 0.0);
         let last = self.shape.last;
-        let lod = self.shape.lod.max(zero).min(last);
+        let lod = self.shape.lod.max(self.shape.finest).min(last);
         let fine = lod.floor();
         let coarser = ((lod - fine - (1.0 - BAND)) * (1.0 / BAND)).max(zero);
         let colours = self.average::<A>(fine, active);

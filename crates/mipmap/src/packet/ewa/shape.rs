@@ -13,8 +13,9 @@ pub(super) struct Shape<S: Simd> {
     pub(super) minor: f32x16<S>,
     /// The longer one's direction, of length 1.
     pub(super) along: [f32x16<S>; 2],
-    /// The level that the shorter axis asks for, below 0 too, and the last there is.
+    /// The level that the shorter axis asks for, below 0 too; the finest and the last there are.
     pub(super) lod: f32x16<S>,
+    pub(super) finest: f32x16<S>,
     pub(super) last: f32x16<S>,
     /// Where the last level answers; the axes are of length 1 there.
     pub(super) coarsest: mask32x16<S>,
@@ -42,7 +43,8 @@ impl<S: Simd> Shape<S> {
                 .select(ellipse.aspect(LodRule::Exact), one)
                 .min(followed);
         let lod = packet_log2(simd, minor) + tier.bias();
-        let last = f32x16::splat(simd, (texture.levels() - 1) as f32);
+        let [finest, last] = texture.stored();
+        let (finest, last) = (f32x16::splat(simd, finest), f32x16::splat(simd, last));
         let coarsest = !bounded | (minor.simd_ge(one) & lod.simd_ge(last));
 
         // In units of the longer axis: squares of squares do not leave f32.
@@ -59,6 +61,7 @@ impl<S: Simd> Shape<S> {
                 known.select(y / length, zero),
             ],
             lod,
+            finest,
             last,
             coarsest,
             magnified: ((one - minor) * 4.0).max(zero).min(one),
