@@ -21,6 +21,9 @@ struct Patch {
     edges: [[f64; 3]; 3],
 }
 
+/// Corners of a triangle's edges.
+const EDGES: [[usize; 2]; 3] = [[0, 1], [1, 2], [2, 0]];
+
 /// The surfaces of a frame, and the triangles that they became.
 #[derive(Clone, Copy)]
 pub(super) struct Surfaces<'a> {
@@ -173,16 +176,18 @@ impl Patch {
         if (self.draw, self.facing) != (other.draw, other.facing) {
             return false;
         }
-        self.element == other.element
-            || (0..9).any(|k| {
-                // From i to the next corner here, from the next of j to j there.
-                let (i, j) = (k / 3, k % 3);
-                let (next_i, next_j) = ((i + 1) % 3, (j + 1) % 3);
-                let [a, b] = [self.vertices, other.vertices];
-                a[i] == b[next_j]
-                    && a[next_i] == b[j]
-                    && self.has_tangents_of(other, [[i, next_j], [next_i, j]], frame)
-            })
+        if self.element == other.element {
+            return true;
+        }
+        let [a, b] = [self.vertices, other.vertices];
+        for [i, next_i] in EDGES {
+            for [j, next_j] in EDGES {
+                if a[i] == b[next_j] && a[next_i] == b[j] {
+                    return self.has_tangents_of(other, [[i, next_j], [next_i, j]], frame);
+                }
+            }
+        }
+        false
     }
 
     /// Whether tangents that were made for corners of triangles, not for vertices, are the same at common ones.
