@@ -1,5 +1,6 @@
 //! Each reduction kernel: time to build all levels of a photograph's size, beside what it lets through and what it
-//! keeps. Ids `mipmap/pyramid/KERNEL`; summed-area tables and rip-maps for comparison.
+//! keeps. Ids `mipmap/pyramid/KERNEL`; summed-area tables and rip-maps for comparison; `mipmap/pyramid/4096/KERNEL` of
+//! 4096² texels of four channels that are one by one.
 
 use std::f64::consts::PI;
 use std::hint::black_box;
@@ -9,11 +10,12 @@ use criterion::{BenchmarkId, Criterion, Throughput};
 use glam::UVec2;
 use mipmap::pyramid::{Kernel, NegativeLobes, PyramidOptions, Schedule};
 use mipmap::{Content, Pyramid, RipMap, SummedArea};
-use sampler::{Texels, Texture, Transfer};
+use sampler::{AlphaMode, Texels, Texture, Transfer};
 
 /// Texels along an edge of the zone plate, and of the picture that is timed.
 const PLATE: u32 = 512;
 const PICTURE: u32 = 1024;
+const LARGE: u32 = 4096;
 
 const KERNELS: [(&str, Kernel); 4] = [
     ("box", Kernel::Box),
@@ -30,7 +32,7 @@ pub(crate) fn bench(criterion: &mut Criterion) {
             contrast(kernel, 0.25),
         );
     }
-    let picture = picture();
+    let picture = picture(PICTURE);
     let mut group = criterion.benchmark_group("mipmap/pyramid");
     group
         .sample_size(10)
@@ -57,6 +59,20 @@ pub(crate) fn bench(criterion: &mut Criterion) {
     group.bench_function("summed_area", |b| {
         b.iter(|| SummedArea::build(black_box(&picture)));
     });
+    // As other libraries take it: no alpha among the channels. The first row is the texture copied, which is in all.
+    let large = picture(LARGE).with_alpha(AlphaMode::Premultiplied);
+    group.throughput(Throughput::Elements(u64::from(LARGE) * u64::from(LARGE)));
+    group.bench_function("4096/copy", |b| b.iter(|| black_box(&large).clone()));
+    for (name, kernel) in [("box", Kernel::Box), ("kaiser", Kernel::Kaiser)] {
+        let options = PyramidOptions {
+            kernel,
+            schedule: Schedule::CurrentPool,
+            ..PyramidOptions::default()
+        };
+        group.bench_function(format!("4096/{name}"), |b| {
+            b.iter(|| built(black_box(&large), &options));
+        });
+    }
     group.finish();
 }
 
@@ -141,10 +157,10 @@ fn plate(value: impl Fn(u32, u32) -> f64) -> Texture {
 }
 
 /// Opaque and transparent colour of 8 bits, as a photograph's size.
-fn picture() -> Texture {
-    let texels = (0..PICTURE * PICTURE)
+fn picture(size: u32) -> Texture {
+    let texels = (0..size * size)
         .flat_map(|k| k.wrapping_mul(2_654_435_761).to_le_bytes())
         .collect();
-    Texture::new(UVec2::splat(PICTURE), 4, Transfer::Srgb, Texels::U8(texels))
+    Texture::new(UVec2::splat(size), 4, Transfer::Srgb, Texels::U8(texels))
         .expect("four bytes a texel")
 }
