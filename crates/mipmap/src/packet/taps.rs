@@ -158,11 +158,11 @@ impl Taps {
     /// Asks for the texels that they read of a texture to be brought near, ahead of [`Self::sample`].
     ///
     /// A hint: see [`Sheet::prefetch`](sampler::packet::Sheet::prefetch). Worth it for textures that the nearer caches do
-    /// not hold: of three textures of 2048² texels under one surface it saves a fifth of the time to shade it.
+    /// not hold: of three textures of 2048² texels under one surface it saves a fifth of the time to shade it, of up to 16
+    /// probes a pixel of one texture an eighth to a fifth. Of one or two taps of one texture it costs what it saves.
+    #[inline]
     pub fn prefetch(&self, texture: &PackedPyramid) {
-        for tap in &self.list {
-            texture.sheet().prefetch(tap);
-        }
+        texture.sheet().prefetch(&self.list);
     }
 
     /// The colours that they read of a texture, a packet a channel.

@@ -102,24 +102,27 @@ impl Sheet {
         self.stride
     }
 
-    /// Asks for the texels of a tap to be brought near, ahead of [`Sums::add`](super::Sums::add).
+    /// Asks for the texels of taps to be brought near, ahead of [`Sums::add`](super::Sums::add).
     ///
-    /// A hint: nothing is read, and a tap of another sheet is no error. It costs as much as a quarter of the reading
+    /// A hint: nothing is read, and taps of another sheet are no error. It costs as much as a quarter of the reading
     /// and saves the waiting of texels that are not in the nearer caches, if there is anything to do meanwhile.
-    #[inline(always)]
-    pub fn prefetch(&self, tap: &Tap) {
+    #[inline]
+    pub fn prefetch(&self, taps: &[Tap]) {
         match &self.texels {
             // The row below is in the upper half.
-            SheetTexels::Codes8(texels) => prefetch(texels, &tap.offsets),
-            SheetTexels::Codes16(texels) => self.prefetch_rows(texels, tap),
-            SheetTexels::Floats(texels) => self.prefetch_rows(texels, tap),
+            SheetTexels::Codes8(texels) => {
+                taps.iter().for_each(|tap| prefetch(texels, &tap.offsets))
+            }
+            SheetTexels::Codes16(texels) => self.prefetch_rows(texels, taps),
+            SheetTexels::Floats(texels) => self.prefetch_rows(texels, taps),
         }
     }
 
-    #[inline(always)]
-    fn prefetch_rows<T>(&self, texels: &[T], tap: &Tap) {
-        prefetch(texels, &tap.offsets);
-        if let Some(below) = texels.get(self.stride as usize..) {
+    #[inline]
+    fn prefetch_rows<T>(&self, texels: &[T], taps: &[Tap]) {
+        let below = texels.get(self.stride as usize..).unwrap_or(texels);
+        for tap in taps {
+            prefetch(texels, &tap.offsets);
             prefetch(below, &tap.offsets);
         }
     }

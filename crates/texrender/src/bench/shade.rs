@@ -127,6 +127,9 @@ impl TileShader<'_> {
         let coordinates = planes.packet(simd, at[0] as f64, at[1] as f64);
         let footprint = footprint(self.textures[0], &coordinates);
         taps.find(simd, self.textures[0], self.state, &footprint);
+        if self.state.max_anisotropy > 1.0 {
+            taps.prefetch(self.textures[0]);
+        }
     }
 
     /// Texture coordinates over a triangle, from the first pixel of a tile: by its corners in clip space, which have not
