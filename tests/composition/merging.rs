@@ -5,7 +5,7 @@ use std::f32::consts::{PI, TAU};
 use glam::{DMat4, DVec3, Vec2, Vec3, Vec4};
 use proptest::prelude::*;
 use texrender::scene::{Instance, Material, MaterialModel, Primitive};
-use texrender::{Film, FragmentMerging, Plan, Scene, Settings, View, prepare, render};
+use texrender::{Aov, Film, FragmentMerging, Plan, Scene, Settings, View, prepare, render};
 
 /// A sphere of `rings` times twice as many quads, its vertices in common, painted from vertex to vertex.
 fn sphere(rings: u32) -> Primitive {
@@ -153,6 +153,29 @@ fn triangles_without_common_vertices_are_shaded_apart() {
         assert_eq!(merged.counts, each.counts);
         assert!(light(&merged) == light(&each));
     }
+}
+
+/// What is kept beside the colours of a surface without normals has a normal for each triangle; the colours have not.
+#[test]
+fn values_beside_the_colours_change_none() {
+    let unlit = Material {
+        model: MaterialModel::Unlit,
+        ..Material::default()
+    };
+    let flat = Primitive {
+        normals: None,
+        ..sphere(30)
+    };
+    let of = |aovs: &[Aov]| {
+        let settings = Settings {
+            aovs: aovs.to_vec(),
+            ..settings(FragmentMerging::Neighbours, 4)
+        };
+        drawn(flat.clone(), unlit.clone(), &settings)
+    };
+    let (plain, with_values) = (of(&[]), of(&Aov::ALL));
+    assert_eq!(plain.counts, with_values.counts);
+    assert!(light(&plain) == light(&with_values));
 }
 
 /// Triangles between few vertices, in any order and any orientation.

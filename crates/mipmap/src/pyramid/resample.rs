@@ -206,7 +206,6 @@ mod tests {
                 let errors = || short.iter().zip(&long).map(|(a, b)| f64::from(a - b));
                 let greatest = errors().fold(0f64, |most, error| most.max(error.abs()));
                 let mean = errors().sum::<f64>() / errors().count() as f64;
-                eprintln!("{kernel:?} {size} {address:?}: {greatest:.2e} {mean:.2e}");
                 assert!(
                     greatest <= f64::from(WIDE_KERNEL_U8_ERROR) && mean.abs() <= 1e-7,
                     "{kernel:?} {size} {address:?}: {greatest:e}, mean {mean:e}"

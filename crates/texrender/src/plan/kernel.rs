@@ -144,6 +144,16 @@ impl Kernel {
         matches!(self.lighting, Lighting::Lit(_))
     }
 
+    /// Whether what shading reads goes on from a triangle to its neighbours wherever they have their vertices in common:
+    /// no normals that triangles have for themselves, and no coordinates that a mapping gives.
+    #[must_use]
+    pub(crate) fn is_continuous(&self) -> bool {
+        let by_vertices = |map: &Map| matches!(map.coordinates, Coordinates::Set(_));
+        (self.curvature == Curvature::Smooth || !self.is_lit())
+            && self.shown.is_none()
+            && self.maps().all(by_vertices)
+    }
+
     /// All its maps.
     pub(crate) fn maps(&self) -> impl Iterator<Item = &Map> {
         let mut all = vec![self.base_color_map.as_ref(), self.emissive_map.as_ref()];

@@ -6,7 +6,7 @@ use shading::LightKind;
 use shading::packet::Vec3x16;
 use texcoord::mapping::{PlacedMapping, Placement};
 
-use super::layout::{Layout, Normals, Wants};
+use super::layout::{Layout, Wants};
 use crate::plan::{Draw, Kernel, Plan, Viewpoint};
 use crate::prepare::Resources;
 use crate::scene::{MappingSpace, Projection, Scene, SurfaceMapping};
@@ -31,7 +31,7 @@ pub(super) struct FrameKernel<'a> {
     pub layout: Layout,
     /// For the test of its alpha.
     pub alpha_layout: Layout,
-    /// Whether what it reads goes on from a triangle to its neighbours wherever they have their vertices in common.
+    /// [`Kernel::is_continuous`], asked once a frame.
     pub is_continuous: bool,
 }
 
@@ -43,14 +43,11 @@ impl<'a> Frame<'a> {
             near_lights: plan.lights.iter().any(|light| near(light.kind)),
             values: !plan.settings.aovs.is_empty(),
         };
-        let kernel = |kernel| {
-            let layout = Layout::of(kernel, wants, &resources.sheets);
-            FrameKernel {
-                kernel,
-                is_continuous: layout.normals != Normals::Flat && !layout.surface,
-                layout,
-                alpha_layout: Layout::of_alpha(kernel, &resources.sheets),
-            }
+        let kernel = |kernel: &'a Kernel| FrameKernel {
+            kernel,
+            layout: Layout::of(kernel, wants, &resources.sheets),
+            alpha_layout: Layout::of_alpha(kernel, &resources.sheets),
+            is_continuous: kernel.is_continuous(),
         };
         let kernels: Vec<FrameKernel> = plan.kernels.iter().map(kernel).collect();
         let mappings = |draw: &Draw| {
