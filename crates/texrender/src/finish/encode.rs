@@ -3,6 +3,7 @@
 use std::io::Cursor;
 use std::path::Path;
 
+use fearless_simd::{Level, Simd, dispatch, prelude::*};
 use glam::Vec3;
 use image::codecs::hdr::HdrEncoder;
 use image::codecs::jpeg::JpegEncoder;
@@ -10,9 +11,13 @@ use image::codecs::png::{CompressionType, FilterType, PngEncoder};
 use image::codecs::webp::WebPEncoder;
 use image::{ExtendedColorType, ImageEncoder, Rgb};
 use rayon::prelude::*;
-use sampler::transfer::{encode_srgb_u8, encode_srgb_u16, encode_unorm_u8, encode_unorm_u16};
+use sampler::transfer::{
+    SrgbU8Encoder, encode_srgb_u16, encode_unorm_u8, encode_unorm_u8_packet, encode_unorm_u16,
+};
+use texcoord::packet::LANES;
 
-use super::{FinishOptions, ToneMap, developed, gain};
+use super::develop::{Alpha, Development, Row, developed_rows};
+use super::{FinishOptions, ToneMap, gain};
 use crate::error::Error;
 use crate::render::Film;
 use crate::settings::Background;
@@ -79,15 +84,16 @@ pub(super) fn encode(
 ) -> Result<Vec<u8>, String> {
     use ExtendedColorType as Kind;
     let transparent = film.background() == Background::Transparent;
+    let channels = if transparent { 4 } else { 3 };
+    let development = Development {
+        gain: gain(options),
+        tonemap: options.tonemap,
+        alpha: Alpha::Straight,
+    };
     let (samples, kind) = match (format, options.bit_depth) {
-        (FileFormat::Hdr, _) => return encode_hdr(film, options),
+        (FileFormat::Hdr, _) => return encode_hdr(film, &development),
         (FileFormat::Png, BitDepth::Sixteen) => (
-            display(
-                film,
-                options,
-                |c| encode_srgb_u16(c).to_ne_bytes(),
-                |a| encode_unorm_u16(a).to_ne_bytes(),
-            ),
+            developed_rows(film, &development, (channels * 2, 0), write_u16),
             if transparent {
                 Kind::Rgba16
             } else {
@@ -95,23 +101,64 @@ pub(super) fn encode(
             },
         ),
         _ => (
-            display(
-                film,
-                options,
-                |c| [encode_srgb_u8(c)],
-                |a| [encode_unorm_u8(a)],
-            ),
+            developed_rows(film, &development, (channels, 0), write_u8),
             if transparent { Kind::Rgba8 } else { Kind::Rgb8 },
         ),
     };
     write(&samples, (film.width(), film.height()), kind, format)
 }
 
-fn encode_hdr(film: &Film, options: &FinishOptions) -> Result<Vec<u8>, String> {
-    let gain = gain(options);
-    let pixels = rows(film, 1, Rgb([0.0; 3]), |x, y, out| {
-        let (color, _) = developed(film, x, y, gain, ToneMap::None);
-        out[0] = Rgb(within_shared_exponent(color).to_array());
+/// The 8-bit codes of a row, of as many channels as there is room for.
+fn write_u8(row: &Row, out: &mut [u8]) {
+    dispatch!(Level::new(), simd => match out.len() / row.width() {
+        3 => write_channels::<_, 3>(simd, row, out),
+        _ => write_channels::<_, 4>(simd, row, out),
+    });
+}
+
+#[inline(always)]
+fn write_channels<S: Simd, const CHANNELS: usize>(simd: S, row: &Row, out: &mut [u8]) {
+    let encoder = SrgbU8Encoder::shared();
+    let (pixels, _) = out.as_chunks_mut::<CHANNELS>();
+    for (([r, g, b, a], count), out) in row.packets(simd).zip(pixels.chunks_mut(LANES)) {
+        let [r, g, b] = [r, g, b].map(
+            #[inline(always)]
+            |light| encoder.encode_packet(simd, light),
+        );
+        let colour = r | g << 8 | b << 16;
+        let words = if CHANNELS == 4 {
+            colour | encode_unorm_u8_packet(simd, a) << 24
+        } else {
+            colour
+        };
+        for (word, out) in words.to_array()[..count].iter().zip(out) {
+            out.copy_from_slice(&word.to_le_bytes()[..CHANNELS]);
+        }
+    }
+}
+
+/// The 16-bit codes of a row, two bytes each; of as many channels as there is room for.
+fn write_u16(row: &Row, out: &mut [u8]) {
+    let (codes, _) = out.as_chunks_mut::<2>();
+    let channels = codes.len() / row.width();
+    for (pixel, codes) in row.pixels().zip(codes.chunks_exact_mut(channels)) {
+        let [r, g, b] = pixel.truncate().to_array().map(encode_srgb_u16);
+        let wanted = [r, g, b, encode_unorm_u16(pixel.w)];
+        for (code, wanted) in codes.iter_mut().zip(wanted) {
+            *code = wanted.to_ne_bytes();
+        }
+    }
+}
+
+fn encode_hdr(film: &Film, development: &Development) -> Result<Vec<u8>, String> {
+    let linear = Development {
+        tonemap: ToneMap::None,
+        ..*development
+    };
+    let pixels = developed_rows(film, &linear, (1, Rgb([0.0; 3])), |row, out| {
+        for (pixel, out) in row.pixels().zip(out) {
+            *out = Rgb(within_shared_exponent(pixel.truncate()).to_array());
+        }
     });
     let mut bytes = Vec::new();
     HdrEncoder::new(&mut bytes)
@@ -132,33 +179,6 @@ fn within_shared_exponent(color: Vec3) -> Vec3 {
     } else {
         held
     }
-}
-
-/// Encoded display samples, straight alpha, row by row.
-fn display<const BYTES: usize>(
-    film: &Film,
-    options: &FinishOptions,
-    color_code: impl Fn(f32) -> [u8; BYTES] + Sync,
-    alpha_code: impl Fn(f32) -> [u8; BYTES] + Sync,
-) -> Vec<u8> {
-    let gain = gain(options);
-    let transparent = film.background() == Background::Transparent;
-    let channels = if transparent { 4 } else { 3 };
-    rows(film, channels * BYTES, 0, |x, y, out| {
-        let (color, alpha) = developed(film, x, y, gain, options.tonemap);
-        let straight = if transparent && alpha > 0.0 {
-            color / alpha
-        } else {
-            color
-        };
-        let (slots, _) = out.as_chunks_mut::<BYTES>();
-        for (slot, c) in slots.iter_mut().zip(straight.to_array()) {
-            *slot = color_code(c);
-        }
-        if transparent {
-            slots[3] = alpha_code(alpha);
-        }
-    })
 }
 
 /// `count` values of each pixel, row by row, made in parallel. `pixel` writes them over `empty`.

@@ -7,8 +7,9 @@ use exr::prelude::{
     LayerAttributes, LineOrder, SmallVec, WritableImage,
 };
 
+use super::develop::{Alpha, Development, developed_rows};
 use super::encode::rows;
-use super::{FinishOptions, ToneMap, developed, gain};
+use super::{FinishOptions, ToneMap, gain};
 use crate::render::Film;
 use crate::settings::{Aov, Background};
 
@@ -18,15 +19,20 @@ pub(super) fn encode(
     options: &FinishOptions,
     layers: &[Aov],
 ) -> Result<Vec<u8>, String> {
-    let gain = gain(options);
+    let development = Development {
+        gain: gain(options),
+        tonemap: ToneMap::None,
+        alpha: Alpha::Premultiplied,
+    };
     let names: &[&str] = if film.background() == Background::Transparent {
         &["R", "G", "B", "A"]
     } else {
         &["R", "G", "B"]
     };
-    let pixels = rows(film, 1, [0.0; 4], |x, y, out| {
-        let (color, alpha) = developed(film, x, y, gain, ToneMap::None);
-        out[0] = color.extend(alpha).to_array();
+    let pixels = developed_rows(film, &development, (1, [0.0; 4]), |row, out| {
+        for (pixel, out) in row.pixels().zip(out) {
+            *out = pixel.to_array();
+        }
     });
     let mut channels: Vec<AnyChannel<FlatSamples>> = names
         .iter()

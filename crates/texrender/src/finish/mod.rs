@@ -1,6 +1,7 @@
 //! Stage 5: [`Film`] → file: expose, tone-map or keep linear, encode, replace the file in one step.
 
 mod aov;
+mod develop;
 mod encode;
 mod exr;
 mod replace;
@@ -8,8 +9,6 @@ mod texture;
 mod tonemap;
 
 use std::path::Path;
-
-use glam::Vec3;
 
 use crate::error::Error;
 use crate::render::Film;
@@ -125,23 +124,6 @@ pub fn check_holds(
             error("only EXR holds AOVs beside the colour; give each its own file")
         }
         _ => Ok(()),
-    }
-}
-
-/// Linear colour and alpha of a pixel, premultiplied, background laid behind.
-fn developed(film: &Film, x: u32, y: u32, gain: f32, tonemap: ToneMap) -> (Vec3, f32) {
-    let pixel = film.pixel(x, y);
-    let lit = if pixel.lit_coverage > 0.0 {
-        tonemap.apply(pixel.lit * (gain / pixel.lit_coverage)) * pixel.lit_coverage
-    } else {
-        Vec3::ZERO
-    };
-    let color = lit + pixel.unlit;
-    let alpha = (pixel.lit_coverage + pixel.unlit_coverage).min(1.0);
-    match film.background() {
-        Background::Color(behind) => (color + behind * (1.0 - alpha), 1.0),
-        Background::Transparent => (color, alpha),
-        Background::Environment => (color, 1.0),
     }
 }
 

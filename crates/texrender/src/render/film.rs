@@ -162,6 +162,16 @@ impl Film {
         }
     }
 
+    /// A row of pixels from left to right, tile by tile: lit light, and unlit colour if any visible surface is unlit.
+    pub(crate) fn row(&self, y: u32) -> impl Iterator<Item = (&[Vec4], Option<&[Vec4]>)> {
+        (0..self.width).step_by(TILE_SIZE as usize).map(move |x| {
+            let (tile, start) = self.place(x, y);
+            let end = start + TILE_SIZE.min(self.width - x) as usize;
+            let unlit = tile.unlit.as_ref().map(|unlit| &unlit[start..end]);
+            (&tile.lit[start..end], unlit)
+        })
+    }
+
     /// The channels of an AOV at (x, y); empty if it was not kept.
     ///
     /// # Panics
