@@ -105,7 +105,11 @@ impl<S: Simd> Course<S> {
     pub(super) fn pair(&self, line: &Line<S>, pair: u32, taps: &mut [Tap]) -> u32x16<S> {
         let (cells, weight) = line.pair(self.simd, pair);
         let all = units(weight);
-        let coarse = units(weight * self.fraction);
+        let coarse = if self.levels == 1 {
+            u32x16::splat(self.simd, 0)
+        } else {
+            units(weight * self.fraction)
+        };
         let (ds, dt) = (line.step_s * cells, line.step_t * cells);
         let [s, t] = self.middle;
         let (before, after) = taps.split_at_mut(self.levels);

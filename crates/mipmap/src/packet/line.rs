@@ -44,16 +44,18 @@ impl<S: Simd> Line<S> {
         let (ellipse, eta) = (&plan.ellipse, plan.eta);
         let zero = f32x16::splat(simd, 0.0);
         let one = f32x16::splat(simd, 1.0);
-        // The longer axis over η, from texels to textures.
+        // The longer axis over η, from texels to textures; beyond so many the coarsest level answers, wherever a probe
+        // stands.
         let [x, y] = ellipse.along;
         let squared = x * x + y * y;
-        let some = squared.simd_gt(zero) & squared.simd_le(f32x16::splat(simd, f32::MAX));
-        let length = (ellipse.major_squared / (some.select(squared, one) * eta * eta)).sqrt();
+        let most = f32x16::splat(simd, f32::MAX);
         let [w, h] = [texture.size().x as f32, texture.size().y as f32];
+        let farthest = FARTHEST_STEP * w.min(h);
+        let farthest = f32x16::splat(simd, farthest * farthest);
+        let some =
+            squared.simd_gt(zero) & squared.simd_le(most) & ellipse.major_squared.simd_le(farthest);
+        let length = (ellipse.major_squared / (some.select(squared, one) * eta * eta)).sqrt();
         let (step_s, step_t) = (x * length * (1.0 / w), y * length * (1.0 / h));
-        // Beyond so many textures the coarsest level answers, wherever a probe stands.
-        let farthest = f32x16::splat(simd, FARTHEST_STEP);
-        let some = some & step_s.abs().simd_le(farthest) & step_t.abs().simd_le(farthest);
         let (weights, pairs) = Weights::of(simd, eta, kind);
         Self {
             step_s: some.select(step_s, zero),

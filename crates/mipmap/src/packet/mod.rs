@@ -52,7 +52,7 @@ use fearless_simd::{Simd, f32x16};
 pub use automatic::automatic;
 pub use ewa::ewa;
 pub use layout::PackedPyramid;
-pub use taps::Taps;
+pub use taps::{ROW, Taps};
 
 /// Where sixteen pixels look in a texture, and how far their neighbours look.
 #[derive(Debug, Clone, Copy)]

@@ -75,27 +75,23 @@ impl<S: Simd> Plan<S> {
 
         let ellipse = Ellipse::of(simd, texture, state.lod_rule, footprint);
         let mut lambda = packet_log2(simd, ellipse.major_squared) * 0.5;
-        // η, and what of the aspect it leaves.
         let mut eta = one;
         if max_anisotropy == 1.0 {
             if state.lod_rule == LodRule::Exact {
-                let log_minor = packet_log2(simd, ellipse.determinant);
-                lambda -= sharpened(simd, lambda + lambda - log_minor);
+                lambda -= sharpened(simd, ellipse.aspect(state.lod_rule), one);
             }
         } else {
             let aspect = ellipse.aspect(state.lod_rule);
-            let major = ellipse.major_squared.sqrt();
-            eta = followed(simd, major, aspect, most, state.magnify);
+            eta = followed(simd, ellipse.major_squared, aspect, most, state.magnify);
             eta = ellipse.bounded.select(eta, one);
-            let log_eta = packet_log2(simd, eta);
             if state.magnify == state.minify {
-                lambda -= log_eta;
+                lambda -= packet_log2(simd, eta);
             } else {
                 // Where η is all of the longer axis, λ is 0 exactly, and neither side of it.
-                lambda = packet_log2(simd, major / eta);
+                lambda = packet_log2(simd, ellipse.major_squared.sqrt() / eta);
             }
             if state.lod_rule == LodRule::Exact {
-                lambda -= sharpened(simd, packet_log2(simd, aspect) - log_eta);
+                lambda -= sharpened(simd, aspect, eta);
             }
         }
         let lambda = ellipse
@@ -166,30 +162,44 @@ impl<S: Simd> Ellipse<S> {
     }
 }
 
-/// By how much λ is less where an aspect of 2ˣ is cut short.
+/// By how much λ is less where of an aspect η is left: no logarithm where that is all of it, or half and less.
 #[inline(always)]
-fn sharpened<S: Simd>(simd: S, log_cut: f32x16<S>) -> f32x16<S> {
+fn sharpened<S: Simd>(simd: S, aspect: f32x16<S>, eta: f32x16<S>) -> f32x16<S> {
     let (zero, one) = (f32x16::splat(simd, 0.0), f32x16::splat(simd, 1.0));
-    log_cut.min(one).max(zero) * CUT_SHARPENING
+    let halved = aspect.simd_ge(eta + eta);
+    let cut = aspect.simd_gt(eta) & !halved;
+    let mut octaves = halved.select(one, zero);
+    if cut.any_true() {
+        octaves = cut.select(packet_log2(simd, aspect / eta), octaves);
+    }
+    octaves * CUT_SHARPENING
 }
 
 /// η: the aspect that probes follow.
 #[inline(always)]
 fn followed<S: Simd>(
     simd: S,
-    major: f32x16<S>,
+    major_squared: f32x16<S>,
     aspect: f32x16<S>,
     max_anisotropy: f32x16<S>,
     magnify: Filter,
 ) -> f32x16<S> {
     let one = f32x16::splat(simd, 1.0);
-    let most = match magnify {
-        Filter::Nearest => major,
-        Filter::Bilinear | Filter::Bicubic(_) => major * 2.0,
-    };
     let nearly_round = aspect.simd_lt(f32x16::splat(simd, 1.6));
     let needed = nearly_round.select((aspect * 1.5 - 0.8).max(one), aspect);
-    needed.min(max_anisotropy).min(most.max(one))
+    let eta = needed.min(max_anisotropy);
+    // The longer axis in what a probe covers at least, so that none is nearer to the next. Its root is seldom needed.
+    let probes_a_texel = match magnify {
+        Filter::Nearest => 1.0,
+        Filter::Bilinear | Filter::Bicubic(_) => 2.0,
+    };
+    let most_squared = major_squared * (probes_a_texel * probes_a_texel);
+    let too_many = most_squared.simd_lt(eta * eta);
+    if too_many.any_true() {
+        too_many.select(eta.min(most_squared.sqrt().max(one)), eta)
+    } else {
+        eta
+    }
 }
 
 /// λ with bias and limits; NaN never passes.

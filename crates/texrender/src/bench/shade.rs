@@ -3,7 +3,7 @@
 use fearless_simd::{Simd, f32x4, f32x16, mask32x16, prelude::*, u32x16};
 use glam::{DVec3, UVec2};
 use mipmap::SamplerState;
-use mipmap::packet::{PackedPyramid, PacketFootprint, Taps};
+use mipmap::packet::{PackedPyramid, PacketFootprint, ROW, Taps};
 use raster::{Frame, PacketTriangles, SurfacePacket, VisibilityTile};
 use texcoord::packet::{F64x16, LANES, PacketWeights, columns};
 use texcoord::planes::{CoordinatePlanes, PacketCoordinates};
@@ -52,14 +52,11 @@ struct Corners<S: Simd, const ROWS: usize> {
     rows: [[[f32x16<S>; 4]; 3]; ROWS],
 }
 
-/// Packets of a tile's row.
-const PACKETS: usize = 4;
-
 /// Memory of a thread.
 #[derive(Debug, Default)]
 pub(super) struct ShadeScratch {
     /// What the packets of a row read of their textures.
-    taps: [Taps; PACKETS],
+    taps: [Taps; ROW],
     /// Where a tile's packets of several triangles are.
     mixed: Vec<[usize; 2]>,
 }
@@ -79,24 +76,34 @@ impl TileShader<'_> {
         let ShadeScratch { taps, mixed } = scratch;
         let mixed = Mixed::of(visibility.owners(), mixed);
         for (y, row) in rows.iter_mut().enumerate() {
-            // The taps of all packets before the texels of any: neither waits for the other.
-            let mut found = [false; PACKETS];
-            let packets = row.chunks_mut(LANES).zip(&mut *taps).zip(&mut found);
-            for (k, ((pixels, taps), found)) in packets.enumerate() {
-                let at = [k * LANES, y];
-                match mixed.single(simd, at) {
+            let (mut whole, mut count) = ([0; ROW], 0);
+            let mut owners = [0; ROW];
+            for (k, pixels) in row.chunks_mut(LANES).enumerate() {
+                match mixed.single(simd, [k * LANES, y]) {
                     Single::Nobody => pixels.fill(CLEAR),
                     Single::One(owner) if self.scene.shader == Shader::Texture => {
-                        self.one_triangle(simd, owner, (corner, at), &mut last, taps);
-                        *found = true;
+                        (whole[count], owners[count]) = (k * LANES, owner);
+                        count += 1;
                     }
-                    _ => mixed.places.push(at),
+                    _ => mixed.places.push([k * LANES, y]),
                 }
             }
-            for ((pixels, taps), found) in row.chunks_mut(LANES).zip(&*taps).zip(&found) {
-                if *found {
-                    taps.write_codes(simd, self.textures[0], pixels);
-                }
+            // The taps of all packets before the texels of any: neither waits for the other.
+            let taps = &mut taps[..count];
+            Taps::find_row(
+                simd,
+                self.textures[0],
+                self.state,
+                taps,
+                #[inline(always)]
+                |i| self.one_triangle(simd, owners[i], (corner, [whole[i], y]), &mut last),
+            );
+            if self.state.max_anisotropy > 1.0 {
+                taps.iter().for_each(|taps| taps.prefetch(self.textures[0]));
+            }
+            for (taps, first) in taps.iter().zip(whole) {
+                let end = row.len().min(first + LANES);
+                taps.write_codes(simd, self.textures[0], &mut row[first..end]);
             }
         }
         let taps = &mut taps[0];
@@ -107,7 +114,7 @@ impl TileShader<'_> {
         }
     }
 
-    /// Finds the taps of sixteen pixels of one triangle: inlined, so that its planes stay in registers along a row.
+    /// Where sixteen pixels of one triangle look: inlined, so that its planes stay in registers along a row.
     #[inline(always)]
     fn one_triangle<S: Simd>(
         &self,
@@ -115,8 +122,7 @@ impl TileShader<'_> {
         owner: u32,
         (corner, at): (UVec2, [usize; 2]),
         last: &mut Option<LastPlanes>,
-        taps: &mut Taps,
-    ) {
+    ) -> PacketFootprint<S> {
         let planes = match last {
             Some(last) if last.owner == owner => &last.planes,
             _ => {
@@ -125,11 +131,7 @@ impl TileShader<'_> {
             }
         };
         let coordinates = planes.packet(simd, at[0] as f64, at[1] as f64);
-        let footprint = footprint(self.textures[0], &coordinates);
-        taps.find(simd, self.textures[0], self.state, &footprint);
-        if self.state.max_anisotropy > 1.0 {
-            taps.prefetch(self.textures[0]);
-        }
+        footprint(self.textures[0], &coordinates)
     }
 
     /// Texture coordinates over a triangle, from the first pixel of a tile: by its corners in clip space, which have not
