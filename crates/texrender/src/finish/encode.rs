@@ -15,6 +15,7 @@ use sampler::transfer::{
     SrgbU8Encoder, encode_srgb_u16, encode_unorm_u8, encode_unorm_u8_packet, encode_unorm_u16,
 };
 use texcoord::packet::LANES;
+use texcoord::unrolled::three;
 
 use super::develop::{Alpha, Development, Row, developed_rows};
 use super::{FinishOptions, ToneMap, gain};
@@ -121,9 +122,10 @@ fn write_channels<S: Simd, const CHANNELS: usize>(simd: S, row: &Row, out: &mut 
     let encoder = SrgbU8Encoder::shared();
     let (pixels, _) = out.as_chunks_mut::<CHANNELS>();
     for (([r, g, b, a], count), out) in row.packets(simd).zip(pixels.chunks_mut(LANES)) {
-        let [r, g, b] = [r, g, b].map(
+        let light = [r, g, b];
+        let [r, g, b] = three(
             #[inline(always)]
-            |light| encoder.encode_packet(simd, light),
+            |k| encoder.encode_packet(simd, light[k]),
         );
         let colour = r | g << 8 | b << 16;
         let words = if CHANNELS == 4 {
