@@ -32,8 +32,8 @@ struct Weights<S: Simd> {
     falloff: f32x16<S>,
 }
 
-/// The greatest distance of probes, in textures.
-const FARTHEST_STEP: f32 = 1_048_576.0;
+/// The longest axis that probes follow, in textures along the shorter side.
+const LONGEST_AXIS: f32 = 1_048_576.0;
 
 /// The least variance of a line that is divided by: it has the probe in its middle alone.
 const LEAST_VARIANCE: f32 = 1e-6;
@@ -50,10 +50,10 @@ impl<S: Simd> Line<S> {
         let squared = x * x + y * y;
         let most = f32x16::splat(simd, f32::MAX);
         let [w, h] = [texture.size().x as f32, texture.size().y as f32];
-        let farthest = FARTHEST_STEP * w.min(h);
-        let farthest = f32x16::splat(simd, farthest * farthest);
+        let longest = LONGEST_AXIS * w.min(h);
+        let longest = f32x16::splat(simd, longest * longest);
         let some =
-            squared.simd_gt(zero) & squared.simd_le(most) & ellipse.major_squared.simd_le(farthest);
+            squared.simd_gt(zero) & squared.simd_le(most) & ellipse.major_squared.simd_le(longest);
         let length = (ellipse.major_squared / (some.select(squared, one) * eta * eta)).sqrt();
         let (step_s, step_t) = (x * length * (1.0 / w), y * length * (1.0 / h));
         let (weights, pairs) = Weights::of(simd, eta, kind);

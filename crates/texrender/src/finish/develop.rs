@@ -2,11 +2,11 @@
 
 use fearless_simd::{Level, Simd, SimdBase, dispatch, f32x4, f32x16, prelude::*};
 use glam::{Vec3, Vec4};
-use rayon::prelude::*;
 use texcoord::packet::{LANES, columns};
 use texcoord::unrolled::{four, three};
 
 use super::ToneMap;
+use super::rows::whole_rows;
 use crate::render::Film;
 use crate::settings::Background;
 
@@ -99,23 +99,17 @@ impl Row {
     }
 }
 
-/// `count` values of each pixel, row by row, made in parallel. `write` writes those of a row over `empty`.
+/// As [`whole_rows`]: `write` makes a row's values of its developed pixels.
 pub(super) fn developed_rows<T: Copy + Send + Sync>(
     film: &Film,
     development: &Development,
-    (count, empty): (usize, T),
+    each: (usize, T),
     write: impl Fn(&Row, &mut [T]) + Sync,
 ) -> Vec<T> {
-    let (width, height) = (film.width() as usize, film.height() as usize);
-    let mut values = vec![empty; width * height * count];
-    values
-        .par_chunks_exact_mut(width * count)
-        .zip(0u32..film.height())
-        .for_each_init(Row::default, |row, (out, y)| {
-            row.develop(film, y, development);
-            write(row, out);
-        });
-    values
+    whole_rows(film, each, |row: &mut Row, y, out| {
+        row.develop(film, y, development);
+        write(row, out);
+    })
 }
 
 /// Up to sixteen colours, channel by channel; the lanes past them are zero.
@@ -162,24 +156,25 @@ fn developed<S: Simd>(
     );
     let sum = lit_coverage + unlit[3];
     let alpha = sum.simd_lt(one).select(sum, one);
-    let [r, g, b] = match (background, development.alpha) {
-        (Background::Color(behind), _) => {
-            let Vec3 { x, y, z } = behind;
+    let [r, g, b] = colour;
+    match background {
+        Background::Color(Vec3 { x, y, z }) => {
             let open = one - alpha;
-            let [r, g, b] = colour;
-            return [r + open * x, g + open * y, b + open * z, one];
+            [r + open * x, g + open * y, b + open * z, one]
         }
-        (Background::Environment, _) => return [colour[0], colour[1], colour[2], one],
-        (Background::Transparent, Alpha::Premultiplied) => colour,
-        (Background::Transparent, Alpha::Straight) => {
-            let seen = alpha.simd_gt(zero);
-            three(
-                #[inline(always)]
-                |k| seen.select(colour[k] / alpha, colour[k]),
-            )
-        }
-    };
-    [r, g, b, alpha]
+        Background::Environment => [r, g, b, one],
+        Background::Transparent => match development.alpha {
+            Alpha::Premultiplied => [r, g, b, alpha],
+            Alpha::Straight => {
+                let seen = alpha.simd_gt(zero);
+                let [r, g, b] = three(
+                    #[inline(always)]
+                    |k| seen.select(colour[k] / alpha, colour[k]),
+                );
+                [r, g, b, alpha]
+            }
+        },
+    }
 }
 
 #[cfg(test)]
@@ -234,18 +229,20 @@ mod tests {
                 Background::Environment,
             ][which / 6];
             let how = Development { gain, tonemap, alpha };
-            let found = dispatch!(Level::new(), simd => {
-                let unlit = unlit.to_array().map(|c| f32x16::splat(simd, c));
-                developed(simd, load(simd, &lit), unlit, background, &how).map(<[f32; LANES]>::from)
-            });
-            for (lane, &lit) in lit.iter().enumerate() {
-                let wanted = one_pixel(lit, unlit, background, &how).to_array();
-                let found = found.map(|channel| channel[lane]);
-                // Overflowing radiance is no number in both; which NaN it is does not reach the picture.
-                let same = wanted.iter().zip(found).all(|(w, f)| {
-                    w.to_bits() == f.to_bits() || (w.is_nan() && f.is_nan())
+            for level in [Level::new(), Level::baseline()] {
+                let found = dispatch!(level, simd => {
+                    let unlit = unlit.to_array().map(|c| f32x16::splat(simd, c));
+                    developed(simd, load(simd, &lit), unlit, background, &how).map(<[f32; LANES]>::from)
                 });
-                prop_assert!(same, "{lit}: {wanted:?} and {found:?}");
+                for (lane, &lit) in lit.iter().enumerate() {
+                    let wanted = one_pixel(lit, unlit, background, &how).to_array();
+                    let found = found.map(|channel| channel[lane]);
+                    // Overflowing radiance is no number in both; which NaN it is does not reach the picture.
+                    let same = wanted.iter().zip(found).all(|(w, f)| {
+                        w.to_bits() == f.to_bits() || (w.is_nan() && f.is_nan())
+                    });
+                    prop_assert!(same, "{lit}: {wanted:?} and {found:?}");
+                }
             }
         }
     }

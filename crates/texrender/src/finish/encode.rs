@@ -10,7 +10,6 @@ use image::codecs::jpeg::JpegEncoder;
 use image::codecs::png::{CompressionType, FilterType, PngEncoder};
 use image::codecs::webp::WebPEncoder;
 use image::{ExtendedColorType, ImageEncoder, Rgb};
-use rayon::prelude::*;
 use sampler::transfer::{
     SrgbU8Encoder, encode_srgb_u16, encode_unorm_u8, encode_unorm_u8_packet, encode_unorm_u16,
 };
@@ -18,6 +17,7 @@ use texcoord::packet::LANES;
 use texcoord::unrolled::three;
 
 use super::develop::{Alpha, Development, Row, developed_rows};
+use super::rows::rows;
 use super::{FinishOptions, ToneMap, gain};
 use crate::error::Error;
 use crate::render::Film;
@@ -183,33 +183,13 @@ fn within_shared_exponent(color: Vec3) -> Vec3 {
     }
 }
 
-/// `count` values of each pixel, row by row, made in parallel. `pixel` writes them over `empty`.
-pub(super) fn rows<T: Copy + Send + Sync>(
-    film: &Film,
-    count: usize,
-    empty: T,
-    pixel: impl Fn(u32, u32, &mut [T]) + Sync,
-) -> Vec<T> {
-    let (width, height) = (film.width() as usize, film.height() as usize);
-    let mut values = vec![empty; width * height * count];
-    values
-        .par_chunks_exact_mut(width * count)
-        .zip(0u32..film.height())
-        .for_each(|(row, y)| {
-            for (x, out) in (0u32..).zip(row.chunks_exact_mut(count)) {
-                pixel(x, y, out);
-            }
-        });
-    values
-}
-
 /// The bytes of an 8-bit RGB picture whose channels are given in 0..=1, as they are to be stored.
 pub(super) fn encode_rgb8(
     film: &Film,
     format: FileFormat,
     pixel: impl Fn(u32, u32) -> Vec3 + Sync,
 ) -> Result<Vec<u8>, String> {
-    let samples = rows(film, 3, 0, |x, y, out| {
+    let samples = rows(film, (3, 0), |x, y, out| {
         out.copy_from_slice(&pixel(x, y).to_array().map(encode_unorm_u8));
     });
     let size = (film.width(), film.height());

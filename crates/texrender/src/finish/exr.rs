@@ -8,7 +8,7 @@ use exr::prelude::{
 };
 
 use super::develop::{Alpha, Development, developed_rows};
-use super::encode::rows;
+use super::rows::rows;
 use super::{FinishOptions, ToneMap, gain};
 use crate::render::Film;
 use crate::settings::{Aov, Background};
@@ -63,7 +63,7 @@ fn aov_channels(film: &Film, aov: Aov, prefix: &str) -> Vec<AnyChannel<FlatSampl
         .iter()
         .enumerate()
         .map(|(i, name)| {
-            let values = rows(film, 1, 0.0, |x, y, out| out[0] = film.aov(aov, x, y)[i]);
+            let values = rows(film, (1, 0.0), |x, y, out| out[0] = film.aov(aov, x, y)[i]);
             channel(&format!("{prefix}{name}"), values)
         })
         .collect()

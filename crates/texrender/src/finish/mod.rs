@@ -5,6 +5,7 @@ mod develop;
 mod encode;
 mod exr;
 mod replace;
+mod rows;
 mod texture;
 mod tonemap;
 

@@ -74,22 +74,23 @@ fn neutral_packet<S: Simd>(simd: S, color: [f32x16<S>; 3]) -> [f32x16<S>; 3] {
     let least = lesser(r, lesser(g, b));
     let dark = least.simd_lt(f32x16::splat(simd, 0.08));
     let offset = dark.select(least - least * 6.25 * least, f32x16::splat(simd, 0.04));
-    let [r, g, b] = [r - offset, g - offset, b - offset];
-    let peak = greater(r, greater(g, b));
+    let color = [r - offset, g - offset, b - offset];
+    let peak = greater(color[0], greater(color[1], color[2]));
     let plain = peak.simd_lt(f32x16::splat(simd, START));
     if plain.all_true() {
-        return [r, g, b];
+        return color;
     }
     let room = 1.0 - START;
     let compressed = one - room * room / (peak + room - START);
     let scale = compressed / peak;
     let white = one - one / ((peak - compressed) * DESATURATION + 1.0);
-    let bright = |c: f32x16<S>| c * scale * (one - white) + compressed * white;
-    [
-        plain.select(r, bright(r)),
-        plain.select(g, bright(g)),
-        plain.select(b, bright(b)),
-    ]
+    three(
+        #[inline(always)]
+        |k| {
+            let bright = color[k] * scale * (one - white) + compressed * white;
+            plain.select(color[k], bright)
+        },
+    )
 }
 
 /// The lesser of two lanes; the second if either is NaN.
