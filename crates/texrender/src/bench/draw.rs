@@ -1,5 +1,7 @@
 //! A frame: vertices, triangles, tiles; each step on all threads of the current pool.
 
+use std::mem;
+use std::slice::ChunksMut;
 use std::sync::Mutex;
 
 use fearless_simd::{Level, Simd, dispatch, f32x16, prelude::*};
@@ -42,12 +44,6 @@ pub struct Renderer {
 struct Scratch {
     tile: VisibilityTile,
     shade: ShadeScratch,
-}
-
-/// A tile and the rows of the picture that it covers.
-struct Job<'a> {
-    tile: usize,
-    rows: Vec<&'a mut [u32]>,
 }
 
 impl Renderer {
@@ -173,40 +169,57 @@ impl Renderer {
 /// Draws tile by tile; each thread takes the next that is left.
 fn shade(level: Level, shader: &TileShader<'_>, tiles: &[Mutex<Scratch>], picture: &mut Picture) {
     let frame = shader.frame;
-    let queue = Mutex::new(jobs(&mut picture.pixels).into_iter());
-    let next = || queue.lock().ok().and_then(|mut jobs| jobs.next());
+    let queue = Mutex::new(TileQueue::new(&mut picture.pixels));
     let work = |thread: usize| {
         let Ok(mut scratch) = tiles[thread].lock() else {
             return;
         };
         let Scratch { tile, shade } = &mut *scratch;
-        while let Some(mut job) = next() {
-            tile.reset(frame.grid().rect(job.tile));
-            frame.draw_tile(job.tile, tile);
-            dispatch!(level, simd => shader.tile(simd, tile, &mut job.rows, shade));
+        let mut rows = Vec::with_capacity(TILE as usize);
+        let next = |rows: &mut Vec<_>| queue.lock().ok().and_then(|mut queue| queue.next(rows));
+        while let Some(number) = next(&mut rows) {
+            tile.reset(frame.grid().rect(number));
+            frame.draw_tile(number, tile);
+            dispatch!(level, simd => shader.tile(simd, tile, &mut rows, shade));
         }
     };
     rayon::broadcast(|context| work(context.index()));
 }
 
-/// The tiles of a picture with their rows, row by row.
-fn jobs(pixels: &mut [u32]) -> Vec<Job<'_>> {
-    let (width, side) = (WIDTH as usize, TILE as usize);
-    let columns = width.div_ceil(side);
-    let mut jobs = Vec::with_capacity(columns * (HEIGHT as usize).div_ceil(side));
-    for band in pixels.chunks_mut(width * side) {
-        let first = jobs.len();
-        jobs.extend((0..columns).map(|column| Job {
-            tile: first + column,
-            rows: Vec::with_capacity(side),
-        }));
-        for row in band.chunks_mut(width) {
-            for (job, part) in jobs[first..].iter_mut().zip(row.chunks_mut(side)) {
-                job.rows.push(part);
-            }
+/// The tiles of a picture that nobody draws yet, row by row.
+struct TileQueue<'a> {
+    bands: ChunksMut<'a, u32>,
+    /// What is left of the rows of the band whose tiles are taken.
+    left: Vec<&'a mut [u32]>,
+    number: usize,
+}
+
+impl<'a> TileQueue<'a> {
+    fn new(pixels: &'a mut [u32]) -> Self {
+        Self {
+            bands: pixels.chunks_mut((WIDTH * TILE) as usize),
+            left: Vec::with_capacity(TILE as usize),
+            number: 0,
         }
     }
-    jobs
+
+    /// The number of the next tile; `rows` become those that it covers.
+    fn next(&mut self, rows: &mut Vec<&'a mut [u32]>) -> Option<usize> {
+        if self.left.first().is_none_or(|row| row.is_empty()) {
+            let band = self.bands.next()?;
+            self.left.clear();
+            self.left.extend(band.chunks_mut(WIDTH as usize));
+        }
+        rows.clear();
+        rows.extend(self.left.iter_mut().map(|left| {
+            let width = left.len().min(TILE as usize);
+            let (row, rest) = mem::take(left).split_at_mut(width);
+            *left = rest;
+            row
+        }));
+        self.number += 1;
+        Some(self.number - 1)
+    }
 }
 
 /// Projects vertices of an instance, from the `start`-th of its mesh.
