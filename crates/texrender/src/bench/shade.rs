@@ -52,6 +52,29 @@ struct Corners<S: Simd, const ROWS: usize> {
     rows: [[[f32x16<S>; 4]; 3]; ROWS],
 }
 
+/// What 16 pixels see, while the texels that they read are on their way.
+#[derive(Clone, Copy)]
+struct Seen<S: Simd> {
+    covered: mask32x16<S>,
+    /// Of any length, as are the others.
+    normal: Vectors<S>,
+    tangent: Vectors<S>,
+    to_eye: Vectors<S>,
+}
+
+impl<S: Simd> Seen<S> {
+    #[inline(always)]
+    fn nothing(simd: S) -> Self {
+        let zero = [f32x16::splat(simd, 0.0); 3];
+        Self {
+            covered: mask32x16::splat(simd, false),
+            normal: zero,
+            tangent: zero,
+            to_eye: zero,
+        }
+    }
+}
+
 /// Memory of a thread.
 #[derive(Debug, Default)]
 pub(super) struct ShadeScratch {
@@ -106,7 +129,6 @@ impl TileShader<'_> {
                 taps.write_codes(simd, self.textures[0], &mut row[first..end]);
             }
         }
-        let taps = &mut taps[0];
         match self.scene.shader {
             Shader::Texture => self.mixed::<S, 1>(simd, &mixed, corner, rows, taps),
             Shader::Lit => self.mixed::<S, 2>(simd, &mixed, corner, rows, taps),
@@ -164,7 +186,7 @@ impl TileShader<'_> {
         mixed: &Mixed<'_>,
         corner: UVec2,
         rows: &mut [&mut [u32]],
-        taps: &mut Taps,
+        taps: &mut [Taps; ROW],
     ) {
         simd.vectorize(
             #[inline(always)]
@@ -178,17 +200,25 @@ impl TileShader<'_> {
                 let mut triangles = [self.triangles(simd, mixed, first); 3];
                 let mut corners = [self.corners::<S, ROWS>(simd, &triangles[0].triangles); 2];
                 triangles[1] = self.triangles(simd, mixed, place(1));
-                for (k, &at) in places.iter().enumerate() {
-                    // The one that is shaded, the next, and the one after that.
-                    let [now, next, after] = [k % 3, (k + 1) % 3, (k + 2) % 3];
-                    triangles[after] = self.triangles(simd, mixed, place(k + 2));
-                    corners[(k + 1) % 2] = self.corners(simd, &triangles[next].triangles);
-                    let now = &triangles[now];
-                    let first = pixel(corner, at);
-                    let found = self.packet(simd, &now.triangles, &corners[k % 2], first, taps);
-                    let found = now.covered.select(found, u32x16::splat(simd, CLEAR));
+                let mut seen = [Seen::nothing(simd); 2];
+                for k in 0..=places.len() {
+                    if let Some(&at) = places.get(k) {
+                        // The one that is found, the next, and the one after that.
+                        let [now, next, after] = [k % 3, (k + 1) % 3, (k + 2) % 3];
+                        triangles[after] = self.triangles(simd, mixed, place(k + 2));
+                        corners[(k + 1) % 2] = self.corners(simd, &triangles[next].triangles);
+                        let first = pixel(corner, at);
+                        let now = &triangles[now];
+                        seen[k % 2] =
+                            self.find(simd, now, &corners[k % 2], first, &mut taps[k % 2]);
+                    }
+                    let Some(last) = k.checked_sub(1) else {
+                        continue;
+                    };
+                    let at = places[last];
                     let row = &mut rows[at[1]][at[0]..];
                     let width = row.len().min(LANES);
+                    let found = self.colours::<S, ROWS>(simd, &seen[last % 2], &taps[last % 2]);
                     store(found, &mut row[..width]);
                 }
             },
@@ -218,50 +248,69 @@ impl TileShader<'_> {
         Corners { surfaces, rows }
     }
 
+    /// What a packet sees; `taps` become what it reads of its textures.
     #[inline(always)]
-    fn packet<S: Simd, const ROWS: usize>(
+    fn find<S: Simd, const ROWS: usize>(
         &self,
         simd: S,
-        triangles: &PacketTriangles,
-        corners: &Corners<S, ROWS>,
+        Covered { covered, triangles }: &Covered<S>,
+        Corners { surfaces, rows }: &Corners<S, ROWS>,
         first: UVec2,
         taps: &mut Taps,
-    ) -> u32x16<S> {
-        let Corners { surfaces, rows } = corners;
+    ) -> Seen<S> {
         let weights = surfaces.weights(simd, self.frame, triangles, first);
         let coordinates = coordinates(&weights, &rows[0]);
         let footprint = footprint(self.textures[0], &coordinates);
         taps.find(simd, self.textures[0], self.state, &footprint);
+        for texture in self.textures {
+            taps.prefetch(texture);
+        }
+        let mut seen = Seen::nothing(simd);
+        seen.covered = *covered;
         if ROWS == 1 {
-            let mut codes = [0; LANES];
-            taps.write_codes(simd, self.textures[0], &mut codes);
-            return codes.simd_into(simd);
+            return seen;
         }
-        if ROWS == 3 {
-            // Textures of one shape at one place; more of them than the nearer caches hold.
-            for texture in self.textures {
-                taps.prefetch(texture);
-            }
-        }
-        let [r, g, b, _] = taps.sample(simd, self.textures[0]);
         let weights = three(
             #[inline(always)]
             |k| weights.weights[k].narrow(),
         );
         let [_, _, nx, ny] = mixed(&weights, &rows[0]);
         let [nz, px, py, pz] = mixed(&weights, &rows[1]);
-        let (normal, position) = ([nx, ny, nz], [px, py, pz]);
-        let to_eye = self.eye_direction(simd, triangles, position);
+        seen.normal = [nx, ny, nz];
+        seen.to_eye = self.eye_direction(simd, triangles, [px, py, pz]);
+        if ROWS == 3 {
+            let [tx, ty, tz, _] = mixed(&weights, &rows[2]);
+            seen.tangent = [tx, ty, tz];
+        }
+        seen
+    }
+
+    /// Codes of what a packet sees.
+    #[inline(always)]
+    fn colours<S: Simd, const ROWS: usize>(
+        &self,
+        simd: S,
+        seen: &Seen<S>,
+        taps: &Taps,
+    ) -> u32x16<S> {
+        let clear = u32x16::splat(simd, CLEAR);
+        if ROWS == 1 {
+            let mut codes = [0; LANES];
+            taps.write_codes(simd, self.textures[0], &mut codes);
+            return seen.covered.select(codes.simd_into(simd), clear);
+        }
+        let [r, g, b, _] = taps.sample(simd, self.textures[0]);
         let (normal, highlight) = if ROWS == 3 {
             let [x, y, z, _] = taps.sample(simd, self.textures[1]);
             let [strength, ..] = taps.sample(simd, self.textures[2]);
-            let [tx, ty, tz, _] = mixed(&weights, &rows[2]);
-            let normal = mapped_normal(simd, normal, [tx, ty, tz], [x, y, z]);
+            let normal = mapped_normal(simd, seen.normal, seen.tangent, [x, y, z]);
             (normal, strength * MAPPED_HIGHLIGHT)
         } else {
-            (normalized(simd, normal), f32x16::splat(simd, HIGHLIGHT))
+            let normal = normalized(simd, seen.normal);
+            (normal, f32x16::splat(simd, HIGHLIGHT))
         };
-        codes(simd, lit(simd, [r, g, b], normal, to_eye, highlight))
+        let lit = lit(simd, [r, g, b], normal, seen.to_eye, highlight);
+        seen.covered.select(codes(simd, lit), clear)
     }
 
     /// From positions in the mesh to the eye.
