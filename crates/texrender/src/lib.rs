@@ -94,6 +94,7 @@ pub mod unwrap;
 
 mod error;
 mod number;
+mod rays;
 mod settings;
 mod text;
 

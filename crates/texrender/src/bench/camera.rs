@@ -1,5 +1,7 @@
 //! The cameras: composed in f64, rounded to f32, as the peers get them.
 
+use glam::DMat3;
+
 use super::picture::{HEIGHT, WIDTH};
 
 /// A matrix, column by column; clip z in −w..=w.
@@ -25,8 +27,8 @@ pub(super) fn perspective(fov_y_degrees: f64, near: f64, far: f64) -> Matrix {
     ]
 }
 
-/// A view from `eye` to `target`, y up.
-pub(super) fn look_at(eye: [f64; 3], target: [f64; 3]) -> Matrix {
+/// Right, up and back, unit, of a view from `eye` to `target`, y up.
+pub(super) fn axes(eye: [f64; 3], target: [f64; 3]) -> DMat3 {
     let forward = normalized([0, 1, 2].map(|k| target[k] - eye[k]));
     let side = normalized([-forward[2], 0.0, forward[0]]);
     let up = [
@@ -34,12 +36,18 @@ pub(super) fn look_at(eye: [f64; 3], target: [f64; 3]) -> Matrix {
         side[2] * forward[0] - side[0] * forward[2],
         side[0] * forward[1] - side[1] * forward[0],
     ];
+    DMat3::from_cols_array_2d(&[side, up, forward.map(|x| -x)])
+}
+
+/// A view from `eye` to `target`, y up.
+pub(super) fn look_at(eye: [f64; 3], target: [f64; 3]) -> Matrix {
+    let [side, up, back] = axes(eye, target).to_cols_array_2d();
     let dot = |a: [f64; 3]| a[0] * eye[0] + a[1] * eye[1] + a[2] * eye[2];
     [
-        [side[0], up[0], -forward[0], 0.0],
-        [side[1], up[1], -forward[1], 0.0],
-        [side[2], up[2], -forward[2], 0.0],
-        [-dot(side), -dot(up), dot(forward), 1.0],
+        [side[0], up[0], back[0], 0.0],
+        [side[1], up[1], back[1], 0.0],
+        [side[2], up[2], back[2], 0.0],
+        [-dot(side), -dot(up), -dot(back), 1.0],
     ]
 }
 

@@ -58,7 +58,7 @@ pub(super) fn mapped_normal<S: Simd>(
 
 /// Colours: albedo·(0.15 + 0.85 max(N·L, 0)) + highlight·max(N·H, 0)³², H halfway between lamp and eye.
 ///
-/// `normal`: of length 1; `to_eye`: of any.
+/// `normal` and `to_eye`: of length 1.
 #[inline(always)]
 pub(super) fn lit<S: Simd>(
     simd: S,
@@ -72,12 +72,11 @@ pub(super) fn lit<S: Simd>(
         #[inline(always)]
         |k| f32x16::splat(simd, LAMP[k]),
     );
-    let view = normalized(simd, to_eye);
     let half = normalized(
         simd,
         three(
             #[inline(always)]
-            |k| lamp[k] + view[k],
+            |k| lamp[k] + to_eye[k],
         ),
     );
     let n_dot_l = dot(normal, lamp);

@@ -22,8 +22,8 @@ pub struct Vertex {
 pub struct Mesh {
     /// x, y and z of all vertices.
     pub(super) positions: [Vec<f32>; 3],
-    /// Attributes in rows of four: (s, t, normal x, y), (normal z, position), (tangent, 0).
-    pub(super) rows: [Vec<[f32; 4]>; 3],
+    /// Attributes in rows of four: (s, t, normal x, y), (normal z, tangent).
+    pub(super) rows: [Vec<[f32; 4]>; 2],
     /// Corners of the triangles.
     pub(super) triangles: Vec<[u32; 3]>,
 }
@@ -37,8 +37,7 @@ impl Mesh {
             positions: [axis(0), axis(1), axis(2)],
             rows: [
                 row(|v| [v.st[0], v.st[1], v.normal[0], v.normal[1]]),
-                row(|v| [v.normal[2], v.position[0], v.position[1], v.position[2]]),
-                row(|v| [v.tangent[0], v.tangent[1], v.tangent[2], 0.0]),
+                row(|v| [v.normal[2], v.tangent[0], v.tangent[1], v.tangent[2]]),
             ],
             triangles,
         }

@@ -18,6 +18,7 @@ mod mesh;
 mod mixed;
 mod picture;
 mod scene;
+mod several;
 mod shade;
 mod textures;
 

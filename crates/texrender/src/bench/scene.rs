@@ -1,13 +1,16 @@
 //! The scenes and what each is drawn with.
 
+use glam::DMat3;
 use mipmap::{LodRule, MipFilter, SamplerState};
 use raster::Cull;
 use sampler::Filter as TexelFilter;
 
-use super::camera::{IDENTITY, Matrix, look_at, perspective, product};
+use super::camera::{IDENTITY, Matrix, axes, look_at, perspective, product};
 use super::mesh::{CLOSED, Mesh, Vertex, rectangle, round};
 use super::picture::{HEIGHT, WIDTH};
 use crate::error::Error;
+use crate::rays::Rays;
+use crate::scene::Projection;
 
 /// Names of the scenes, in the order of the report.
 pub(super) const NAMES: [&str; 9] = [
@@ -45,7 +48,7 @@ pub struct Scene {
     /// World to clip space, column by column; z in −w..=w.
     pub world_to_clip: [[f32; 4]; 4],
     /// Where highlights are seen from.
-    pub eye: [f32; 3],
+    pub(super) rays: Rays,
     /// Which sides are left out.
     pub cull: Cull,
     /// What becomes of a visible pixel.
@@ -250,7 +253,7 @@ impl Scene {
             mesh,
             instances: vec![[0.0; 3]],
             world_to_clip: world_to_clip.map(|column| column.map(round)),
-            eye: [0.0; 3],
+            rays: rays(DMat3::IDENTITY, 90.0),
             cull: Cull::None,
             shader: Shader::Texture,
             nominal_pixels: None,
@@ -279,17 +282,27 @@ fn plane() -> Scene {
     )
 }
 
+/// The rays of a perspective.
+fn rays(axes: DMat3, fov_y_degrees: f64) -> Rays {
+    let projection = Projection::Perspective {
+        fov_y_radians: fov_y_degrees.to_radians(),
+        near: 1.0,
+        far: None,
+    };
+    Rays::new(&axes, projection, [WIDTH, HEIGHT])
+}
+
 fn spheres(name: &'static str, shader: Shader) -> Scene {
-    let eye = [0.0, 8.0, 14.0];
+    let (eye, target, fov_y_degrees) = ([0.0, 8.0, 14.0], [0.0, -0.5, 0.0], 45.0);
     let camera = product(
-        &perspective(45.0, 0.5, 100.0),
-        &look_at(eye, [0.0, -0.5, 0.0]),
+        &perspective(fov_y_degrees, 0.5, 100.0),
+        &look_at(eye, target),
     );
     let place = |k: u8| 2.2f32 * (f32::from(k) - 3.5);
     let places = (0..8u8).flat_map(|j| (0..8u8).map(move |i| [place(i), 0.0, place(j)]));
     Scene {
         instances: places.collect(),
-        eye: eye.map(round),
+        rays: rays(axes(eye, target), fov_y_degrees),
         cull: CLOSED,
         shader,
         ..Scene::flat(name, Mesh::sphere(), &camera)

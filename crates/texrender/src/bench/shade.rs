@@ -1,23 +1,18 @@
 //! The pixels of a tile, 16 at a time, whatever triangles they see.
 
-use fearless_simd::{Simd, f32x4, f32x16, mask32x16, prelude::*, u32x16};
+use fearless_simd::Simd;
 use glam::{DVec3, UVec2};
 use mipmap::SamplerState;
 use mipmap::packet::{PackedPyramid, PacketFootprint, ROW, Taps};
-use raster::{Frame, PacketTriangles, SurfacePacket, VisibilityTile};
-use texcoord::packet::{F64x16, LANES, PacketWeights, columns};
+use raster::{Frame, VisibilityTile};
+use texcoord::packet::LANES;
 use texcoord::planes::{CoordinatePlanes, PacketCoordinates};
-use texcoord::unrolled::{four, three, two};
 
 use super::draw::clip_position;
-use super::light::{Vectors, codes, lit, mapped_normal, normalized};
 use super::mixed::{Mixed, Single};
 use super::picture::{CLEAR, HEIGHT, WIDTH};
 use super::scene::{Scene, Shader};
-
-/// Strength of the highlight, and what a texture's code is worth.
-const HIGHLIGHT: f32 = 0.35;
-const MAPPED_HIGHLIGHT: f32 = 0.6;
+use super::several::{NORMAL, ST, TANGENT};
 
 /// What the pixels of a frame are shaded with.
 #[derive(Debug, Clone, Copy)]
@@ -35,44 +30,6 @@ pub(super) struct TileShader<'a> {
 struct LastPlanes {
     owner: u32,
     planes: CoordinatePlanes,
-}
-
-/// The triangles that 16 pixels see, and which pixels see one.
-#[derive(Clone, Copy)]
-struct Covered<S: Simd> {
-    covered: mask32x16<S>,
-    triangles: PacketTriangles,
-}
-
-/// Corners of the triangles that 16 pixels see, on their way while the packet before is shaded.
-#[derive(Clone, Copy)]
-struct Corners<S: Simd, const ROWS: usize> {
-    surfaces: SurfacePacket<S>,
-    /// Attributes of the corners, row by row.
-    rows: [[[f32x16<S>; 4]; 3]; ROWS],
-}
-
-/// What 16 pixels see, while the texels that they read are on their way.
-#[derive(Clone, Copy)]
-struct Seen<S: Simd> {
-    covered: mask32x16<S>,
-    /// Of any length, as are the others.
-    normal: Vectors<S>,
-    tangent: Vectors<S>,
-    to_eye: Vectors<S>,
-}
-
-impl<S: Simd> Seen<S> {
-    #[inline(always)]
-    fn nothing(simd: S) -> Self {
-        let zero = [f32x16::splat(simd, 0.0); 3];
-        Self {
-            covered: mask32x16::splat(simd, false),
-            normal: zero,
-            tangent: zero,
-            to_eye: zero,
-        }
-    }
 }
 
 /// Memory of a thread.
@@ -130,9 +87,9 @@ impl TileShader<'_> {
             }
         }
         match self.scene.shader {
-            Shader::Texture => self.mixed::<S, 1>(simd, &mixed, corner, rows, taps),
-            Shader::Lit => self.mixed::<S, 2>(simd, &mixed, corner, rows, taps),
-            Shader::NormalMapped => self.mixed::<S, 3>(simd, &mixed, corner, rows, taps),
+            Shader::Texture => self.several::<S, ST>(simd, &mixed, corner, rows, taps),
+            Shader::Lit => self.several::<S, NORMAL>(simd, &mixed, corner, rows, taps),
+            Shader::NormalMapped => self.several::<S, TANGENT>(simd, &mixed, corner, rows, taps),
         }
     }
 
@@ -176,283 +133,15 @@ impl TileShader<'_> {
         CoordinatePlanes::from_homogeneous(corners, st)
     }
 
-    /// Packets of pixels, each of a triangle of its own, by a shader that reads `ROWS` rows of attributes.
-    ///
-    /// A function of its own, not inlined into each row's loop: 20 KiB of code for each instruction set.
-    #[inline(never)]
-    fn mixed<S: Simd, const ROWS: usize>(
-        &self,
-        simd: S,
-        mixed: &Mixed<'_>,
-        corner: UVec2,
-        rows: &mut [&mut [u32]],
-        taps: &mut [Taps; ROW],
-    ) {
-        simd.vectorize(
-            #[inline(always)]
-            || {
-                let places = &mixed.places;
-                let Some(&first) = places.first() else {
-                    return;
-                };
-                // Places past the last stand for it: what is fetched for them is not used.
-                let place = |k: usize| places[k.min(places.len() - 1)];
-                let mut triangles = [self.triangles(simd, mixed, first); 3];
-                let mut corners = [self.corners::<S, ROWS>(simd, &triangles[0].triangles); 2];
-                triangles[1] = self.triangles(simd, mixed, place(1));
-                let mut seen = [Seen::nothing(simd); 2];
-                for k in 0..=places.len() {
-                    if let Some(&at) = places.get(k) {
-                        // The one that is found, the next, and the one after that.
-                        let [now, next, after] = [k % 3, (k + 1) % 3, (k + 2) % 3];
-                        triangles[after] = self.triangles(simd, mixed, place(k + 2));
-                        corners[(k + 1) % 2] = self.corners(simd, &triangles[next].triangles);
-                        let first = pixel(corner, at);
-                        let now = &triangles[now];
-                        seen[k % 2] =
-                            self.find(simd, now, &corners[k % 2], first, &mut taps[k % 2]);
-                    }
-                    let Some(last) = k.checked_sub(1) else {
-                        continue;
-                    };
-                    let at = places[last];
-                    let row = &mut rows[at[1]][at[0]..];
-                    let width = row.len().min(LANES);
-                    let found = self.colours::<S, ROWS>(simd, &seen[last % 2], &taps[last % 2]);
-                    store(found, &mut row[..width]);
-                }
-            },
-        );
-    }
-
-    #[inline(always)]
-    fn triangles<S: Simd>(&self, simd: S, mixed: &Mixed<'_>, at: [usize; 2]) -> Covered<S> {
-        let (owners, covered) = mixed.owners(simd, at);
-        Covered {
-            covered,
-            triangles: PacketTriangles::new(simd, self.frame, &owners),
-        }
-    }
-
-    #[inline(always)]
-    fn corners<S: Simd, const ROWS: usize>(
-        &self,
-        simd: S,
-        triangles: &PacketTriangles,
-    ) -> Corners<S, ROWS> {
-        let surfaces = SurfacePacket::gather(simd, self.frame, triangles);
-        let mut rows = [[[f32x16::splat(simd, 0.0); 4]; 3]; ROWS];
-        for (row, attributes) in rows.iter_mut().enumerate() {
-            *attributes = self.row(simd, row, triangles);
-        }
-        Corners { surfaces, rows }
-    }
-
-    /// What a packet sees; `taps` become what it reads of its textures.
-    #[inline(always)]
-    fn find<S: Simd, const ROWS: usize>(
-        &self,
-        simd: S,
-        Covered { covered, triangles }: &Covered<S>,
-        Corners { surfaces, rows }: &Corners<S, ROWS>,
-        first: UVec2,
-        taps: &mut Taps,
-    ) -> Seen<S> {
-        let weights = surfaces.weights(simd, self.frame, triangles, first);
-        let coordinates = coordinates(&weights, &rows[0]);
-        let footprint = footprint(self.textures[0], &coordinates);
-        taps.find(simd, self.textures[0], self.state, &footprint);
-        for texture in self.textures {
-            taps.prefetch(texture);
-        }
-        let mut seen = Seen::nothing(simd);
-        seen.covered = *covered;
-        if ROWS == 1 {
-            return seen;
-        }
-        let weights = three(
-            #[inline(always)]
-            |k| weights.weights[k].narrow(),
-        );
-        let [_, _, nx, ny] = mixed(&weights, &rows[0]);
-        let [nz, px, py, pz] = mixed(&weights, &rows[1]);
-        seen.normal = [nx, ny, nz];
-        seen.to_eye = self.eye_direction(simd, triangles, [px, py, pz]);
-        if ROWS == 3 {
-            let [tx, ty, tz, _] = mixed(&weights, &rows[2]);
-            seen.tangent = [tx, ty, tz];
-        }
-        seen
-    }
-
-    /// Codes of what a packet sees.
-    #[inline(always)]
-    fn colours<S: Simd, const ROWS: usize>(
-        &self,
-        simd: S,
-        seen: &Seen<S>,
-        taps: &Taps,
-    ) -> u32x16<S> {
-        let clear = u32x16::splat(simd, CLEAR);
-        if ROWS == 1 {
-            let mut codes = [0; LANES];
-            taps.write_codes(simd, self.textures[0], &mut codes);
-            return seen.covered.select(codes.simd_into(simd), clear);
-        }
-        let [r, g, b, _] = taps.sample(simd, self.textures[0]);
-        let (normal, highlight) = if ROWS == 3 {
-            let [x, y, z, _] = taps.sample(simd, self.textures[1]);
-            let [strength, ..] = taps.sample(simd, self.textures[2]);
-            let normal = mapped_normal(simd, seen.normal, seen.tangent, [x, y, z]);
-            (normal, strength * MAPPED_HIGHLIGHT)
-        } else {
-            let normal = normalized(simd, seen.normal);
-            (normal, f32x16::splat(simd, HIGHLIGHT))
-        };
-        let lit = lit(simd, [r, g, b], normal, seen.to_eye, highlight);
-        seen.covered.select(codes(simd, lit), clear)
-    }
-
-    /// From positions in the mesh to the eye.
-    #[inline(always)]
-    fn eye_direction<S: Simd>(
-        &self,
-        simd: S,
-        triangles: &PacketTriangles,
-        position: Vectors<S>,
-    ) -> Vectors<S> {
-        let instances = u32x16::from_slice(simd, &triangles.vertices[0]) >> self.vertex_bits;
-        let place = if instances.simd_eq(instances[0]).all_true() {
-            let place = self.scene.instances[instances[0] as usize];
-            three(
-                #[inline(always)]
-                |axis| f32x16::splat(simd, place[axis]),
-            )
-        } else {
-            self.places(simd, &instances.to_array())
-        };
-        three(
-            #[inline(always)]
-            |axis| f32x16::splat(simd, self.scene.eye[axis]) - (position[axis] + place[axis]),
-        )
-    }
-
-    /// Places of instances, lane by lane.
-    #[inline(always)]
-    fn places<S: Simd>(&self, simd: S, instances: &[u32; LANES]) -> Vectors<S> {
-        three(
-            #[inline(always)]
-            |axis| {
-                f32x16::from_fn(
-                    simd,
-                    #[inline(always)]
-                    |lane| self.scene.instances[instances[lane] as usize][axis],
-                )
-            },
-        )
-    }
-
-    /// A row of attributes at the three corners of each lane, attribute by attribute.
-    #[inline(always)]
-    fn row<S: Simd>(
-        &self,
-        simd: S,
-        row: usize,
-        triangles: &PacketTriangles,
-    ) -> [[f32x16<S>; 4]; 3] {
-        let rows = &self.scene.mesh.rows[row];
-        three(
-            #[inline(always)]
-            |corner| {
-                let attributes = columns(
-                    #[inline(always)]
-                    |lane| {
-                        let vertex = self.vertex(triangles.vertices[corner][lane]);
-                        f32x4::from_slice(simd, &rows[vertex]).bitcast()
-                    },
-                );
-                four(
-                    #[inline(always)]
-                    |k| attributes[k].bitcast(),
-                )
-            },
-        )
-    }
-
     /// Number in the mesh of a vertex of the frame.
     #[inline(always)]
-    fn vertex(&self, vertex: u32) -> usize {
+    pub(super) fn vertex(&self, vertex: u32) -> usize {
         (vertex & ((1 << self.vertex_bits) - 1)) as usize
     }
 }
 
-/// Writes as many of 16 pixels as there is room for.
 #[inline(always)]
-fn store<S: Simd>(found: u32x16<S>, pixels: &mut [u32]) {
-    if pixels.len() == LANES {
-        found.store_slice(pixels);
-    } else {
-        pixels.copy_from_slice(&found.as_slice()[..pixels.len()]);
-    }
-}
-
-/// A pixel of the target from its place in a tile.
-#[inline(always)]
-fn pixel(corner: UVec2, at: [usize; 2]) -> UVec2 {
-    let [x, y] = at.map(|k| u32::try_from(k).unwrap_or(u32::MAX));
-    corner + UVec2::new(x, y)
-}
-
-/// Σ bᵢ·fᵢ of four attributes.
-#[inline(always)]
-fn mixed<S: Simd>(weights: &[f32x16<S>; 3], corners: &[[f32x16<S>; 4]; 3]) -> [f32x16<S>; 4] {
-    four(
-        #[inline(always)]
-        |k| corners[0][k] * weights[0] + corners[1][k] * weights[1] + corners[2][k] * weights[2],
-    )
-}
-
-/// Texture coordinates and derivatives from the first two attributes: in f64, measured from corner 0.
-#[inline(always)]
-fn coordinates<S: Simd>(
-    weights: &PacketWeights<S>,
-    corners: &[[f32x16<S>; 4]; 3],
-) -> PacketCoordinates<S> {
-    let toward = two(
-        #[inline(always)]
-        |axis| {
-            let [first, one, two] = three(
-                #[inline(always)]
-                |k| corners[k][axis],
-            );
-            [first, one - first, two - first]
-        },
-    );
-    let st = two(
-        #[inline(always)]
-        |axis| {
-            let [first, one, two] = three(
-                #[inline(always)]
-                |k| F64x16::widen(corners[k][axis]),
-            );
-            first + ((one - first) * weights.weights[1] + (two - first) * weights.weights[2])
-        },
-    );
-    PacketCoordinates {
-        st,
-        dst_dx: two(
-            #[inline(always)]
-            |axis| toward[axis][1] * weights.d_dx[1] + toward[axis][2] * weights.d_dx[2],
-        ),
-        dst_dy: two(
-            #[inline(always)]
-            |axis| toward[axis][1] * weights.d_dy[1] + toward[axis][2] * weights.d_dy[2],
-        ),
-    }
-}
-
-#[inline(always)]
-fn footprint<S: Simd>(
+pub(super) fn footprint<S: Simd>(
     texture: &PackedPyramid,
     coordinates: &PacketCoordinates<S>,
 ) -> PacketFootprint<S> {
