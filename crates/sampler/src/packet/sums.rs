@@ -7,8 +7,8 @@ use super::fetch::Quads;
 use super::lanes::{channels, repeated, repeated_floats};
 use super::tap::Tap;
 
-/// Bound of the error of one tap, in units of the greatest texel: four weights in units of 2⁻¹⁴, and f32.
-pub const TAP_MAX_ERROR: f32 = 1.3e-4;
+/// Bound of the error of one tap, in units of the greatest texel: four weights within 2⁻¹⁴ each, and f32.
+pub const TAP_MAX_ERROR: f32 = 1.6e-4;
 
 /// The weight of 1.
 pub const ONE: u32 = 1 << ONE_BITS;

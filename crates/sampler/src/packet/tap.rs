@@ -1,5 +1,5 @@
 use fearless_simd::prelude::*;
-use fearless_simd::{Simd, i32x16, u32x16};
+use fearless_simd::{Simd, i32x16, u16x32, u32x16};
 
 use super::LANES;
 use super::sums::ONE;
@@ -68,16 +68,17 @@ impl Tap {
 
     /// Becomes the tap of the texels at `offsets`, right of them, and below both.
     ///
-    /// Four weights, each rounded to 1/[`ONE`]; they add up to the tap's exactly.
+    /// Four weights, each within 1/[`ONE`]; they add up to the tap's exactly.
     #[inline(always)]
     pub fn set<S: Simd>(&mut self, offsets: u32x16<S>, share: &Share<S>) {
-        let lower = part_of(share.weight, share.lower);
-        let upper = share.weight - lower;
-        let upper_right = part_of(upper, share.right);
-        let lower_right = part_of(lower, share.right);
+        // To the nearest unit.
+        let lower = (share.weight * share.lower + ONE / 2) >> ONE.ilog2();
+        let both = (share.weight - lower) | (lower << 16);
+        let right = parts_of(both, share.right);
         offsets.store_slice(&mut self.offsets);
-        pair(upper - upper_right, lower - lower_right).store_slice(&mut self.left);
-        pair(upper_right, lower_right).store_slice(&mut self.right);
+        // Neither half is less than its part.
+        (both - right).store_slice(&mut self.left);
+        right.store_slice(&mut self.right);
     }
 
     /// Becomes the tap of a block of 2×2 texels whose weights are free: what filters of any shape are made of.
@@ -98,16 +99,28 @@ impl Tap {
     }
 }
 
-/// `weight` times `part`, to the nearest unit.
+/// The weights w in the halves of a lane times p, `part`: ⌊w·p + w/2⌋, in units.
+///
+/// In 16 bits, where machines multiply twice as many: the high half of 2w times 2p + 1. It is w where p is 1, and 0 where
+/// either is.
 #[inline(always)]
-fn part_of<S: Simd>(weight: u32x16<S>, part: u32x16<S>) -> u32x16<S> {
-    (weight * part + ONE / 2) >> ONE.ilog2()
+fn parts_of<S: Simd>(weights: u32x16<S>, part: u32x16<S>) -> u32x16<S> {
+    let doubled: u16x32<S> = (weights + weights).bitcast();
+    // Twice the part, and 1, in both halves.
+    let part: u16x32<S> = (part * 0x0002_0002 + 0x0001_0001).bitcast();
+    let (doubled, part) = (doubled.to_array(), part.to_array());
+    let mut high = [0; 2 * LANES];
+    for (high, (a, b)) in high.iter_mut().zip(doubled.into_iter().zip(part)) {
+        *high = high_half(u32::from(a) * u32::from(b));
+    }
+    let high: u16x32<S> = high.simd_into(weights.simd);
+    high.bitcast()
 }
 
-/// Two weights in a lane, the first in the low half.
+#[allow(clippy::cast_possible_truncation, reason = "16 bits are left")]
 #[inline(always)]
-fn pair<S: Simd>(first: u32x16<S>, second: u32x16<S>) -> u32x16<S> {
-    first | (second << 16)
+fn high_half(product: u32) -> u16 {
+    (product >> 16) as u16
 }
 
 /// Two weights of any sign in the halves of a lane.
@@ -115,4 +128,41 @@ fn pair<S: Simd>(first: u32x16<S>, second: u32x16<S>) -> u32x16<S> {
 fn signed_pair<S: Simd>(first: i32x16<S>, second: i32x16<S>) -> u32x16<S> {
     let (first, second): (u32x16<S>, u32x16<S>) = (first.bitcast(), second.bitcast());
     (first & 0xffff) | (second << 16)
+}
+
+#[cfg(test)]
+mod tests {
+    use fearless_simd::{Level, dispatch};
+    use proptest::prelude::*;
+
+    use super::*;
+
+    /// Products of two weights with one part, in every lane.
+    fn parts([first, second]: [u32; 2], part: u32) -> [u32; 2] {
+        dispatch!(Level::new(), simd => {
+            let weights = u32x16::splat(simd, first | second << 16);
+            let found = parts_of(weights, u32x16::splat(simd, part)).to_array()[LANES - 1];
+            [found & 0xffff, found >> 16]
+        })
+    }
+
+    #[test]
+    fn all_and_nothing_are_exact() {
+        for weight in 0..=ONE {
+            assert_eq!(parts([weight, ONE - weight], ONE), [weight, ONE - weight]);
+            assert_eq!(parts([weight, ONE - weight], 0), [0, 0]);
+            assert_eq!(parts([0, ONE], weight), [0, weight]);
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn parts_are_within_a_unit(first in 0..=ONE, second in 0..=ONE, part in 0..=ONE) {
+            for (weight, found) in [first, second].into_iter().zip(parts([first, second], part)) {
+                let exact = f64::from(weight) * f64::from(part) / f64::from(ONE);
+                prop_assert!((f64::from(found) - exact).abs() < 1.0, "{weight} {part}: {found}");
+                prop_assert!(found <= weight);
+            }
+        }
+    }
 }
