@@ -11,6 +11,11 @@ use super::plan::Plan;
 use super::{PackedPyramid, PacketFootprint};
 use crate::sampler_state::SamplerState;
 
+/// Probes of any address modes and filters, asked about them probe by probe.
+pub(super) const ANY: u8 = 0;
+/// Those of the commonest: both axes repeat, and every place lies between the centres of texels.
+pub(super) const PLAIN: u8 = 1;
+
 /// Where a packet's taps are: one place on one or two levels, or pairs of probes on either side of it.
 pub(super) struct Course<S: Simd> {
     simd: S,
@@ -79,7 +84,12 @@ impl<S: Simd> Course<S> {
     pub(super) fn middle(&self, taps: &mut [Tap]) {
         let coarse = units(self.fraction);
         let one = u32x16::splat(self.simd, ONE);
-        self.probe(self.middle, [one - coarse, coarse], taps);
+        let weights = [one - coarse, coarse];
+        if self.is_plain() {
+            self.probe::<PLAIN>(self.middle, weights, taps);
+        } else {
+            self.probe::<ANY>(self.middle, weights, taps);
+        }
     }
 
     /// Sets a tap to the nearest texel of one level, of a texture without a border.
@@ -99,10 +109,21 @@ impl<S: Simd> Course<S> {
         tap.set_single(self.simd, offsets);
     }
 
-    /// Sets twice as many to those of a pair of probes on either side of the middle; returns what each probe counts
-    /// for.
+    /// Whether probes are [`PLAIN`].
     #[inline(always)]
-    pub(super) fn pair(&self, line: &Line<S>, pair: u32, taps: &mut [Tap]) -> u32x16<S> {
+    pub(super) fn is_plain(&self) -> bool {
+        self.modes == [AddressMode::Repeat; 2] && self.split.between_centres
+    }
+
+    /// Sets twice as many to those of a pair of probes on either side of the middle; returns what each probe counts
+    /// for. With [`PLAIN`] for `KIND` only if they are.
+    #[inline(always)]
+    pub(super) fn pair<const KIND: u8>(
+        &self,
+        line: &Line<S>,
+        pair: u32,
+        taps: &mut [Tap],
+    ) -> u32x16<S> {
         let (cells, weight) = line.pair(self.simd, pair);
         let all = units(weight);
         let coarse = if self.levels == 1 {
@@ -113,20 +134,29 @@ impl<S: Simd> Course<S> {
         let (ds, dt) = (line.step_s * cells, line.step_t * cells);
         let [s, t] = self.middle;
         let (before, after) = taps.split_at_mut(self.levels);
-        self.probe([s - ds, t - dt], [all - coarse, coarse], before);
-        self.probe([s + ds, t + dt], [all - coarse, coarse], after);
+        self.probe::<KIND>([s - ds, t - dt], [all - coarse, coarse], before);
+        self.probe::<KIND>([s + ds, t + dt], [all - coarse, coarse], after);
         all
     }
 
     /// Sets the taps of a place on each level.
     #[inline(always)]
-    pub(super) fn probe(&self, [s, t]: [f32x16<S>; 2], weights: [u32x16<S>; 2], taps: &mut [Tap]) {
-        let s = fold(self.simd, self.modes[0], s);
-        let t = fold(self.simd, self.modes[1], t);
+    pub(super) fn probe<const KIND: u8>(
+        &self,
+        [s, t]: [f32x16<S>; 2],
+        weights: [u32x16<S>; 2],
+        taps: &mut [Tap],
+    ) {
+        let modes = match KIND {
+            PLAIN => [AddressMode::Repeat; 2],
+            _ => self.modes,
+        };
+        let s = fold(self.simd, modes[0], s);
+        let t = fold(self.simd, modes[1], t);
         let levels = self.placed.iter().zip(weights);
         for (tap, (placed, weight)) in taps.iter_mut().zip(levels) {
-            let (column, right) = self.split.texel(self.simd, s, placed.width);
-            let (row, lower) = self.split.texel(self.simd, t, placed.height);
+            let (column, right) = self.split.texel::<KIND>(self.simd, s, placed.width);
+            let (row, lower) = self.split.texel::<KIND>(self.simd, t, placed.height);
             let offsets = placed.origin + row * self.stride + column;
             let share = Share {
                 right,
@@ -167,8 +197,13 @@ impl<S: Simd> Split<S> {
 
     /// The first of two neighbouring texels on an axis of `size`, counted from the ring, and the weight of the second.
     #[inline(always)]
-    fn texel(&self, simd: S, place: f32x16<S>, size: f32x16<S>) -> (u32x16<S>, u32x16<S>) {
-        if self.between_centres {
+    fn texel<const KIND: u8>(
+        &self,
+        simd: S,
+        place: f32x16<S>,
+        size: f32x16<S>,
+    ) -> (u32x16<S>, u32x16<S>) {
+        if KIND == PLAIN || self.between_centres {
             // Half a texel more than the place: the ring is one wide, a centre half of one from its border.
             let units = u32x16::truncate_from(place * size + (ONE / 2) as f32);
             return (units >> ONE.ilog2(), units & (ONE - 1));

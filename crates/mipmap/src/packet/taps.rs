@@ -4,7 +4,7 @@ use sampler::packet::{LANES, SheetTexels, Sums8, Sums16, SumsFloat, Tap, channel
 use sampler::{AddressMode, Filter};
 
 use super::bicubic::Kernels;
-use super::course::Course;
+use super::course::{ANY, Course, PLAIN};
 use super::finish::{Codes, Colours, pick, summed};
 use super::line::Line;
 use super::plan::{Plan, greatest_anisotropy};
@@ -161,8 +161,15 @@ impl Taps {
             let line = Line::of(simd, texture, plan, state.probe_weights);
             self.begin(2 * course.levels, line.pairs as usize);
             let mut total = u32x16::splat(simd, 0);
-            for (pair, taps) in (0..).zip(self.list.chunks_exact_mut(self.a_step)) {
-                total += course.pair(&line, pair, taps);
+            let pairs = (0..).zip(self.list.chunks_exact_mut(self.a_step));
+            if course.is_plain() {
+                for (pair, taps) in pairs {
+                    total += course.pair::<PLAIN>(&line, pair, taps);
+                }
+            } else {
+                for (pair, taps) in pairs {
+                    total += course.pair::<ANY>(&line, pair, taps);
+                }
             }
             self.total = Some((total * 2).to_array());
         } else {
