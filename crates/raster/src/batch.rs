@@ -39,6 +39,10 @@ pub(crate) struct Batch<S: Simd> {
     used: mask32x16<S>,
 }
 
+/// Written at once and read lane by lane: in no two lines of the cache.
+#[repr(align(64))]
+struct Aligned([[u32; LANES]; 3]);
+
 /// Where the windows of a batch lie in a tile.
 pub(crate) struct Windows<S: Simd> {
     /// Places of the corners, in units from the tile's.
@@ -89,8 +93,8 @@ impl<S: Simd> Batch<S> {
             #[inline(always)]
             |lane| u32x4::from_slice(simd, &frame.whole(lanes[lane]).words),
         );
-        let triangles = [a.to_array(), b.to_array(), c.to_array()];
-        let corner = |k: usize, lane: usize| frame.vertex(triangles[k][lane]);
+        let triangles = Aligned([a.to_array(), b.to_array(), c.to_array()]);
+        let corner = |k: usize, lane: usize| frame.vertex(triangles.0[k][lane]);
         let words = three(
             #[inline(always)]
             |k| {
@@ -115,7 +119,7 @@ impl<S: Simd> Batch<S> {
                     F64x16::from_fn(
                         simd,
                         #[inline(always)]
-                        |lane| corner(k, lane).depth,
+                        |lane| corner(k, lane).depth(),
                     )
                 },
             ),
@@ -153,12 +157,10 @@ impl<S: Simd> Batch<S> {
             let mut values = edges.row(row, position);
             for column in 0..windows.largest[0] {
                 let inside = edges.inside(&values) & open & windows.size[0].simd_gt(column);
-                if inside.any_true() {
-                    let depth = depths.at(values[1], values[2]);
-                    let places = corners + (row * stride + column).cast_unsigned();
-                    covered.push(inside, places, self.owners, depth);
-                    nearest = inside.select(nearest.max(depth), nearest);
-                }
+                let depth = depths.at(values[1], values[2]);
+                let places = corners + (row * stride + column).cast_unsigned();
+                covered.push(inside, places, self.owners, depth);
+                nearest = inside.select(nearest.max(depth), nearest);
                 for (value, step) in values.iter_mut().zip(&steps) {
                     *value += *step;
                 }

@@ -290,7 +290,7 @@ pub(crate) fn corners_of(vertices: &[ScreenVertex], whole: &Whole) -> Corners {
         ),
         depth: three(
             #[inline(always)]
-            |k| corners[k].depth,
+            |k| corners[k].depth(),
         ),
     }
 }

@@ -256,7 +256,7 @@ impl Frame {
             ),
             inv_w: three(
                 #[inline(always)]
-                |k| corners[k].inv_w,
+                |k| corners[k].inv_w(),
             ),
             piece: None,
         }

@@ -14,7 +14,10 @@ use crate::{Frame, Surface};
 ///
 /// The first of three steps, so that the caller can have what the next packets need on its way while it works on one:
 /// these, then a [`SurfacePacket`], then its [weights](SurfacePacket::weights).
+///
+/// Aligned, so that no array that is written at once and read lane by lane lies in two lines of the cache.
 #[derive(Clone, Copy, Debug)]
+#[repr(C, align(64))]
 pub struct PacketTriangles {
     /// Corners among the vertices of the frame, corner by corner a lane each.
     pub vertices: [[u32; LANES]; 3],
@@ -70,17 +73,14 @@ impl<S: Simd> SurfacePacket<S> {
     #[inline(always)]
     #[must_use]
     pub fn gather(simd: S, frame: &Frame, triangles: &PacketTriangles) -> Self {
-        let vertices = &triangles.vertices;
-        let words = three(
-            #[inline(always)]
-            |k| {
-                let [x, y, inv_w, _] = columns(
-                    #[inline(always)]
-                    |lane| u32x4::from_slice(simd, &frame.vertex(vertices[k][lane]).words),
-                );
-                [x, y, inv_w]
-            },
-        );
+        let mut words = [[u32x16::splat(simd, 0); 3]; 3];
+        for (words, vertices) in words.iter_mut().zip(&triangles.vertices) {
+            let [x, y, inv_w, _] = columns(
+                #[inline(always)]
+                |lane| u32x4::from_slice(simd, &frame.vertex(vertices[lane]).words),
+            );
+            *words = [x, y, inv_w];
+        }
         Self { words }
     }
 

@@ -1,6 +1,6 @@
 //! Vertices on the screen, each projected once, 16 at a time.
 
-use fearless_simd::{Simd, f64x8, mask64x8, prelude::*};
+use fearless_simd::{Simd, f64x8, mask64x8, prelude::*, u32x16};
 use texcoord::packet::{F64x16, LANES};
 use texcoord::unrolled::two;
 
@@ -17,13 +17,23 @@ pub struct ScreenVertex {
     /// the bits of 1/w rounded to f32, and flags: a bit for each plane of the view volume that it is beyond, and those
     /// below.
     pub(crate) words: [u32; 4],
-    /// z/w.
-    pub(crate) depth: f64,
-    /// 1/w.
-    pub(crate) inv_w: f64,
+    /// z/w and 1/w.
+    pub(crate) depth_and_inv_w: [f64; 2],
 }
 
 impl ScreenVertex {
+    /// z/w.
+    #[inline(always)]
+    pub(crate) fn depth(&self) -> f64 {
+        self.depth_and_inv_w[0]
+    }
+
+    /// 1/w.
+    #[inline(always)]
+    pub(crate) fn inv_w(&self) -> f64 {
+        self.depth_and_inv_w[1]
+    }
+
     /// Sub-pixel units from the target's top left corner, y down.
     #[inline(always)]
     pub(crate) fn position(&self) -> [i32; 2] {
@@ -61,24 +71,60 @@ pub fn project<S: Simd>(
     let depth = z / w;
     let column = (x / w * half + half) * F64x16::splat(simd, f64::from(viewport.width));
     let row = (half - y / w * half) * F64x16::splat(simd, f64::from(viewport.height));
-    let columns = snapped(simd, column).to_array();
-    let rows = snapped(simd, row).to_array();
-    let (depths, inv_ws) = (depth.to_array(), inv_w.to_array());
-    let near_inv_ws = inv_w.narrow().to_array();
-
     let flags = flags(simd, viewport, clip, [column, row, depth, inv_w]);
-    for (lane, vertex) in out.iter_mut().enumerate() {
-        *vertex = ScreenVertex {
-            words: [
-                low_bits(columns[lane]),
-                low_bits(rows[lane]),
-                near_inv_ws[lane].to_bits(),
-                flags[lane],
-            ],
-            depth: depths[lane],
-            inv_w: inv_ws[lane],
-        };
+    let words = [
+        low_words(snapped(simd, column)),
+        low_words(snapped(simd, row)),
+        inv_w.narrow().bitcast(),
+        flags.simd_into(simd),
+    ];
+    if let Ok(out) = out.try_into() {
+        write(&words, depth, inv_w, out);
+    } else {
+        let mut all = [ScreenVertex::default(); LANES];
+        write(&words, depth, inv_w, &mut all);
+        out.copy_from_slice(&all[..out.len()]);
     }
+}
+
+/// Writes 16 vertices, turned in registers from a packet a word to 16 bytes at a time.
+#[inline(always)]
+fn write<S: Simd>(
+    words: &[u32x16<S>; 4],
+    depth: F64x16<S>,
+    inv_w: F64x16<S>,
+    out: &mut [ScreenVertex; LANES],
+) {
+    // Words 0 and 2, 1 and 3, and then all four of four vertices.
+    let even = words[0].interleave(words[2]);
+    let odd = words[1].interleave(words[3]);
+    let (first, second) = (even.0.interleave(odd.0), even.1.interleave(odd.1));
+    let words = [first.0, first.1, second.0, second.1];
+    let halves = two(
+        #[inline(always)]
+        |half| depth.0[half].interleave(inv_w.0[half]),
+    );
+    let pairs = [halves[0].0, halves[0].1, halves[1].0, halves[1].1];
+    for (k, four) in out.chunks_exact_mut(4).enumerate() {
+        let (low, high) = words[k].split();
+        let ((a, b), (c, d)) = (low.split(), high.split());
+        let (low, high) = pairs[k].split();
+        let ((e, f), (g, h)) = (low.split(), high.split());
+        for (vertex, (words, pair)) in four.iter_mut().zip([(a, e), (b, f), (c, g), (d, h)]) {
+            words.store_slice(&mut vertex.words);
+            pair.store_slice(&mut vertex.depth_and_inv_w);
+        }
+    }
+}
+
+/// The low words of 16 numbers' bits.
+#[inline(always)]
+fn low_words<S: Simd>(numbers: F64x16<S>) -> u32x16<S> {
+    let [low, high] = two(
+        #[inline(always)]
+        |half| numbers.0[half].bitcast::<u32x16<S>>(),
+    );
+    low.deinterleave(high).0
 }
 
 /// Grid units of pixels, as the low bits of an f64.
@@ -94,15 +140,6 @@ fn snapped<S: Simd>(simd: S, pixels: F64x16<S>) -> F64x16<S> {
             units.simd_gt(high).select(high, units) + INTEGER
         },
     ))
-}
-
-#[allow(
-    clippy::cast_possible_truncation,
-    reason = "the low half of the bits is the integer"
-)]
-#[inline(always)]
-fn low_bits(sum: f64) -> u32 {
-    sum.to_bits() as u32
 }
 
 /// Flags of 16 vertices; most packets have none.
