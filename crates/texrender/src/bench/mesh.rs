@@ -17,13 +17,20 @@ pub struct Vertex {
     pub tangent: [f64; 3],
 }
 
+/// Attributes of a vertex in rows of four: (s, t, normal x, y), (normal z, tangent). In one line of the cache.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+#[repr(align(32))]
+pub(super) struct Attributes(pub(super) [[f32; 4]; 2]);
+
 /// Vertices, rounded to f32 from what computed them, and triangles between them.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Mesh {
     /// x, y and z of all vertices.
     pub(super) positions: [Vec<f32>; 3],
-    /// Attributes in rows of four: (s, t, normal x, y), (normal z, tangent).
-    pub(super) rows: [Vec<[f32; 4]>; 2],
+    /// Texture coordinates, for shaders that read nothing else: bits of s, of t in the high half.
+    pub(super) texture_coordinates: Vec<u64>,
+    /// What the others read.
+    pub(super) attributes: Vec<Attributes>,
     /// Corners of the triangles.
     pub(super) triangles: Vec<[u32; 3]>,
 }
@@ -32,13 +39,18 @@ impl Mesh {
     /// A mesh of these vertices and triangles.
     pub fn new(vertices: &[Vertex], triangles: Vec<[u32; 3]>) -> Self {
         let axis = |k: usize| vertices.iter().map(|v| round(v.position[k])).collect();
-        let row = |of: fn(&Vertex) -> [f64; 4]| vertices.iter().map(|v| of(v).map(round)).collect();
+        let st = |v: &Vertex| {
+            let [s, t] = v.st.map(|x| u64::from(round(x).to_bits()));
+            s | t << 32
+        };
+        let attributes = |v: &Vertex| {
+            let ([x, y, z], [tx, ty, tz]) = (v.normal, v.tangent);
+            Attributes([[v.st[0], v.st[1], x, y], [z, tx, ty, tz]].map(|row| row.map(round)))
+        };
         Self {
             positions: [axis(0), axis(1), axis(2)],
-            rows: [
-                row(|v| [v.st[0], v.st[1], v.normal[0], v.normal[1]]),
-                row(|v| [v.normal[2], v.tangent[0], v.tangent[1], v.tangent[2]]),
-            ],
+            texture_coordinates: vertices.iter().map(st).collect(),
+            attributes: vertices.iter().map(attributes).collect(),
             triangles,
         }
     }

@@ -1,8 +1,8 @@
 //! Packets of pixels that see several triangles, and their shading.
 
-use fearless_simd::{Simd, f32x4, f32x16, mask32x16, prelude::*, u32x16};
+use fearless_simd::{Simd, f32x4, f32x16, mask32x16, prelude::*, u32x16, u64x8};
 use glam::UVec2;
-use mipmap::packet::{ROW, Taps};
+use mipmap::packet::Taps;
 use raster::{PacketTriangles, SurfacePacket};
 use shading::packet::Vec3x16;
 use texcoord::packet::{F64x16, LANES, PacketWeights, columns};
@@ -10,6 +10,7 @@ use texcoord::planes::PacketCoordinates;
 use texcoord::unrolled::{four, three, two};
 
 use super::light::{codes, lit, mapped_normal, normalized};
+use super::mesh::Attributes;
 use super::mixed::Mixed;
 use super::picture::CLEAR;
 use super::shade::{TileShader, footprint};
@@ -59,7 +60,7 @@ impl TileShader<'_> {
         mixed: &Mixed<'_>,
         corner: UVec2,
         rows: &mut [&mut [u32]],
-        taps: &mut [Taps; ROW],
+        taps: &mut Taps,
     ) {
         simd.vectorize(
             #[inline(always)]
@@ -70,32 +71,22 @@ impl TileShader<'_> {
                 };
                 // Places past the last stand for it: what is fetched for them is not used.
                 let place = |k: usize| places[k.min(places.len() - 1)];
-                let mut triangles = [self.triangles(simd, mixed, first); 3];
-                let mut corners = [self.corners::<S, N>(simd, &triangles[0].triangles); 2];
-                triangles[1] = self.triangles(simd, mixed, place(1));
-                let mut seen = [Seen {
-                    covered: mask32x16::splat(simd, false),
-                    attributes: [f32x16::splat(simd, 0.0); N],
-                }; 2];
-                for k in 0..=places.len() {
-                    if let Some(&at) = places.get(k) {
-                        // The one that is found, the next, and the one after that.
-                        let [now, next, after] = [k % 3, (k + 1) % 3, (k + 2) % 3];
-                        triangles[after] = self.triangles(simd, mixed, place(k + 2));
-                        corners[(k + 1) % 2] = self.corners(simd, &triangles[next].triangles);
-                        let first = pixel(corner, at);
-                        let now = &triangles[now];
-                        seen[k % 2] =
-                            self.find(simd, now, &corners[k % 2], first, &mut taps[k % 2]);
-                    }
-                    let Some(last) = k.checked_sub(1) else {
-                        continue;
-                    };
-                    let at = places[last];
+                let mut now = self.triangles(simd, mixed, first);
+                let mut next = self.triangles(simd, mixed, place(1));
+                let mut corners = Corners {
+                    surfaces: SurfacePacket::gather(simd, self.frame, &now.triangles),
+                    attributes: [[f32x16::splat(simd, 0.0); N]; 3],
+                };
+                self.fill(simd, &now.triangles, &mut corners);
+                for (k, &at) in places.iter().enumerate() {
+                    let first = pixel(corner, at);
+                    let seen = self.find(simd, (&now, &corners), (first, taps));
+                    now = next;
+                    self.fill(simd, &now.triangles, &mut corners);
+                    next = self.triangles(simd, mixed, place(k + 2));
+                    let found = self.colours(simd, &seen, first, taps);
                     let row = &mut rows[at[1]][at[0]..];
                     let width = row.len().min(LANES);
-                    let first = pixel(corner, at);
-                    let found = self.colours(simd, &seen[last % 2], first, &taps[last % 2]);
                     store(found, &mut row[..width]);
                 }
             },
@@ -111,37 +102,38 @@ impl TileShader<'_> {
         }
     }
 
+    /// In place: they are longer than what registers hold.
     #[inline(always)]
-    fn corners<S: Simd, const N: usize>(
+    fn fill<S: Simd, const N: usize>(
         &self,
         simd: S,
         triangles: &PacketTriangles,
-    ) -> Corners<S, N> {
-        let surfaces = SurfacePacket::gather(simd, self.frame, triangles);
-        let mut attributes = [[f32x16::splat(simd, 0.0); N]; 3];
-        for row in 0..N.div_ceil(4) {
-            let found = self.row(simd, row, triangles);
-            for (corner, found) in attributes.iter_mut().zip(found) {
-                let corner = &mut corner[4 * row..];
-                let count = corner.len().min(4);
-                corner[..count].copy_from_slice(&found[..count]);
+        corners: &mut Corners<S, N>,
+    ) {
+        corners.surfaces = SurfacePacket::gather(simd, self.frame, triangles);
+        for (corner, attributes) in corners.attributes.iter_mut().enumerate() {
+            let vertices = &triangles.vertices[corner];
+            if N == ST {
+                attributes.copy_from_slice(&self.texture_coordinates(simd, vertices));
+                continue;
             }
-        }
-        Corners {
-            surfaces,
-            attributes,
+            let rows = two(
+                #[inline(always)]
+                |row| self.row(simd, row, vertices),
+            );
+            for (k, attribute) in attributes.iter_mut().enumerate() {
+                *attribute = rows[k / 4][k % 4];
+            }
         }
     }
 
-    /// What a packet sees; `taps` become what it reads of its textures.
+    /// What a packet, the first of its pixels `first`, sees; `taps` become what it reads of its textures.
     #[inline(always)]
     fn find<S: Simd, const N: usize>(
         &self,
         simd: S,
-        Covered { covered, triangles }: &Covered<S>,
-        corners: &Corners<S, N>,
-        first: UVec2,
-        taps: &mut Taps,
+        (Covered { covered, triangles }, corners): (&Covered<S>, &Corners<S, N>),
+        (first, taps): (UVec2, &mut Taps),
     ) -> Seen<S, N> {
         let weights = corners.surfaces.weights(simd, self.frame, triangles, first);
         let corners = &corners.attributes;
@@ -156,8 +148,8 @@ impl TileShader<'_> {
             |k| weights.weights[k].narrow(),
         );
         let mut attributes = [f32x16::splat(simd, 0.0); N];
-        for k in ST..N {
-            attributes[k] = corners[0][k] * weights[0]
+        for (k, attribute) in attributes.iter_mut().enumerate().skip(ST) {
+            *attribute = corners[0][k] * weights[0]
                 + corners[1][k] * weights[1]
                 + corners[2][k] * weights[2];
         }
@@ -201,30 +193,40 @@ impl TileShader<'_> {
         seen.covered.select(codes(simd, lit), clear)
     }
 
-    /// A row of attributes at the three corners of each lane, attribute by attribute.
+    /// s and t of a vertex a lane.
     #[inline(always)]
-    fn row<S: Simd>(
-        &self,
-        simd: S,
-        row: usize,
-        triangles: &PacketTriangles,
-    ) -> [[f32x16<S>; 4]; 3] {
-        let rows = &self.scene.mesh.rows[row];
-        three(
+    fn texture_coordinates<S: Simd>(&self, simd: S, vertices: &[u32; LANES]) -> [f32x16<S>; ST] {
+        let [low, high] = two(
             #[inline(always)]
-            |corner| {
-                let attributes = columns(
+            |half| {
+                let pairs = u64x8::from_fn(
+                    simd,
                     #[inline(always)]
                     |lane| {
-                        let vertex = self.vertex(triangles.vertices[corner][lane]);
-                        f32x4::from_slice(simd, &rows[vertex]).bitcast()
+                        let vertex = self.vertex(vertices[half * LANES / 2 + lane]);
+                        self.scene.mesh.texture_coordinates[vertex]
                     },
                 );
-                four(
-                    #[inline(always)]
-                    |k| attributes[k].bitcast(),
-                )
+                pairs.bitcast::<f32x16<S>>()
             },
+        );
+        let (s, t) = low.deinterleave(high);
+        [s, t]
+    }
+
+    /// A row of attributes of a vertex a lane, attribute by attribute.
+    #[inline(always)]
+    fn row<S: Simd>(&self, simd: S, row: usize, vertices: &[u32; LANES]) -> [f32x16<S>; 4] {
+        let attributes = columns(
+            #[inline(always)]
+            |lane| {
+                let Attributes(rows) = &self.scene.mesh.attributes[self.vertex(vertices[lane])];
+                f32x4::from_slice(simd, &rows[row]).bitcast()
+            },
+        );
+        four(
+            #[inline(always)]
+            |k| attributes[k].bitcast(),
         )
     }
 }

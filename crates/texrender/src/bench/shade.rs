@@ -9,6 +9,7 @@ use texcoord::packet::LANES;
 use texcoord::planes::{CoordinatePlanes, PacketCoordinates};
 
 use super::draw::clip_position;
+use super::mesh::Attributes;
 use super::mixed::{Mixed, Single};
 use super::picture::{CLEAR, HEIGHT, WIDTH};
 use super::scene::{Scene, Shader};
@@ -86,6 +87,7 @@ impl TileShader<'_> {
                 taps.write_codes(simd, self.textures[0], &mut row[first..end]);
             }
         }
+        let taps = &mut taps[0];
         match self.scene.shader {
             Shader::Texture => self.several::<S, ST>(simd, &mixed, corner, rows, taps),
             Shader::Lit => self.several::<S, NORMAL>(simd, &mixed, corner, rows, taps),
@@ -128,8 +130,8 @@ impl TileShader<'_> {
             let y = (clip.w - clip.y) * (0.5 * height) - first.y * clip.w;
             DVec3::new(x, y, clip.w)
         });
-        let rows = vertices.map(|v| self.scene.mesh.rows[0][self.vertex(v)]);
-        let st = rows.map(|row| [f64::from(row[0]), f64::from(row[1])]);
+        let attributes = vertices.map(|v| self.scene.mesh.attributes[self.vertex(v)]);
+        let st = attributes.map(|Attributes([[s, t, ..], _])| [s, t].map(f64::from));
         CoordinatePlanes::from_homogeneous(corners, st)
     }
 
