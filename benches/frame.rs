@@ -9,6 +9,7 @@
     reason = "criterion's macros make public functions without documentation"
 )]
 
+mod coherent;
 mod encode;
 mod filters;
 mod job;
@@ -28,6 +29,7 @@ use criterion::{criterion_group, criterion_main};
 criterion_group!(
     benches,
     stages::bench,
+    coherent::bench,
     encode::bench,
     filters::bench,
     pyramid::bench,
