@@ -1,5 +1,5 @@
-//! Lookups of neighbouring pixels, sixteen at a time, on one thread: what a core reads of a texture that its nearest caches do
-//! not hold. Ids `mipmap/coherent/FILTER/TEXELS`; the error of these filters is in `mipmap/filter_packet`.
+//! Lookups of neighbouring pixels, sixteen at a time, on one thread: what a core reads of a texture that its nearest
+//! caches do not hold. Ids `mipmap/coherent/FILTER/TEXELS`; the error of these filters is in `mipmap/filter_packet`.
 
 use std::hint::black_box;
 use std::time::Duration;

@@ -99,10 +99,10 @@ impl Tap {
     }
 }
 
-/// The weights w in the halves of a lane times p, `part`: ⌊w·p + w/2⌋, in units.
+/// The weights w in the halves of a lane times p, `part`: w·p + w/2 in units, rounded down. It is w where p is 1, and 0
+/// where either is.
 ///
-/// In 16 bits, where machines multiply twice as many: the high half of 2w times 2p + 1. It is w where p is 1, and 0 where
-/// either is.
+/// In 16 bits, where machines multiply twice as many: the high half of 2w times 2p + 1.
 #[inline(always)]
 fn parts_of<S: Simd>(weights: u32x16<S>, part: u32x16<S>) -> u32x16<S> {
     let doubled: u16x32<S> = (weights + weights).bitcast();
