@@ -43,6 +43,8 @@ pub struct CoordinatePlanes {
     first: [f64; 2],
     numerators: [Plane; 2],
     denominator: Plane,
+    /// What the planes change by per pixel in x and y, rounded once a triangle: the numerators, then the denominator.
+    slopes: [[f32; 2]; 3],
 }
 
 /// Coordinates of 16 pixels, with their screen derivatives.
@@ -105,10 +107,14 @@ impl CoordinatePlanes {
                 dy: sum(edges.dy),
             }
         };
+        let numerators = [0, 1].map(|axis| plane(st.map(|at| at[axis] - st[0][axis])));
+        let denominator = plane([1.0; 3]);
+        let slope = |plane: Plane| [plane.dx, plane.dy].map(round);
         Self {
             first: st[0],
-            numerators: [0, 1].map(|axis| plane(st.map(|at| at[axis] - st[0][axis]))),
-            denominator: plane([1.0; 3]),
+            numerators,
+            denominator,
+            slopes: [numerators[0], numerators[1], denominator].map(slope),
         }
     }
 
@@ -136,7 +142,7 @@ impl CoordinatePlanes {
             ),
             per_d.narrow(),
         );
-        let [d_dx, d_dy] = [d.dx, d.dy].map(round);
+        let [d_dx, d_dy] = self.slopes[2];
         PacketCoordinates {
             st: two(
                 #[inline(always)]
@@ -145,14 +151,14 @@ impl CoordinatePlanes {
             dst_dx: two(
                 #[inline(always)]
                 |axis| {
-                    let n = f32x16::splat(simd, round(self.numerators[axis].dx));
+                    let n = f32x16::splat(simd, self.slopes[axis][0]);
                     (n - narrow[axis] * d_dx) * per_d
                 },
             ),
             dst_dy: two(
                 #[inline(always)]
                 |axis| {
-                    let n = f32x16::splat(simd, round(self.numerators[axis].dy));
+                    let n = f32x16::splat(simd, self.slopes[axis][1]);
                     (n - narrow[axis] * d_dy) * per_d
                 },
             ),
@@ -180,7 +186,6 @@ pub(crate) fn power_of_two_near(x: f64) -> f64 {
     clippy::cast_possible_truncation,
     reason = "the one rounding of a plane's slope to f32"
 )]
-#[inline(always)]
 fn round(x: f64) -> f32 {
     x as f32
 }
