@@ -8,13 +8,9 @@ use sampler::{AddressMode, Filter};
 use super::layout::Placed;
 use super::line::Line;
 use super::plan::Plan;
+use super::wrapping::Layer;
 use super::{PackedPyramid, PacketFootprint};
-use crate::sampler_state::SamplerState;
-
-/// Probes of any address modes and filters, asked about them probe by probe.
-pub(super) const ANY: u8 = 0;
-/// Those of the commonest: both axes repeat, and every place lies between the centres of texels.
-pub(super) const PLAIN: u8 = 1;
+use crate::sampler_state::{MipFilter, SamplerState};
 
 /// Where a packet's taps are: one place on one or two levels, or pairs of probes on either side of it.
 pub(super) struct Course<S: Simd> {
@@ -27,8 +23,10 @@ pub(super) struct Course<S: Simd> {
     placed: [Placed<S>; 2],
     /// How many of them are read.
     pub(super) levels: usize,
-    fraction: f32x16<S>,
+    pub(super) fraction: f32x16<S>,
     split: Split<S>,
+    /// Whether the texture repeats, all its sides are powers of two, and every tap is bilinear.
+    pub(super) wraps: bool,
 }
 
 /// How a place on an axis is split into the first of two neighbouring texels and the weight of the second.
@@ -51,15 +49,24 @@ impl<S: Simd> Course<S> {
         footprint: &PacketFootprint<S>,
         plan: &Plan<S>,
     ) -> Self {
+        let split = Split::of(simd, texture, state, plan.minified);
+        let one_level = texture.levels() == 1 || state.mip == MipFilter::None;
+        let placed = if one_level {
+            texture.placed_everywhere(simd, texture.finest() as usize)
+        } else {
+            texture.placed(simd, plan.fine)
+        };
+        let wraps = texture.wraps() && split.between_centres;
         Self {
             simd,
             modes: texture.modes(),
             stride: texture.sheet().stride(),
             middle: [held(simd, footprint.s), held(simd, footprint.t)],
-            placed: texture.placed(simd, plan.fine),
-            levels: 1 + usize::from(plan.fraction.simd_gt(0.0).any_true()),
+            placed,
+            levels: 1 + usize::from(!one_level && plan.fraction.simd_gt(0.0).any_true()),
             fraction: plan.fraction,
-            split: Split::of(simd, texture, state, plan.minified),
+            split,
+            wraps,
         }
     }
 
@@ -72,10 +79,11 @@ impl<S: Simd> Course<S> {
             modes: texture.modes(),
             stride: texture.sheet().stride(),
             middle: [zero; 2],
-            placed: texture.placed(simd, f32x16::splat(simd, texture.stored()[0])),
+            placed: texture.placed_everywhere(simd, texture.finest() as usize),
             levels: 1,
             fraction: zero,
             split: Split::of(simd, texture, &SamplerState::default(), zero.simd_lt(zero)),
+            wraps: false,
         }
     }
 
@@ -84,12 +92,7 @@ impl<S: Simd> Course<S> {
     pub(super) fn middle(&self, taps: &mut [Tap]) {
         let coarse = units(self.fraction);
         let one = u32x16::splat(self.simd, ONE);
-        let weights = [one - coarse, coarse];
-        if self.is_plain() {
-            self.probe::<PLAIN>(self.middle, weights, taps);
-        } else {
-            self.probe::<ANY>(self.middle, weights, taps);
-        }
+        self.probe(self.middle, [one - coarse, coarse], taps);
     }
 
     /// Sets a tap to the nearest texel of one level, of a texture without a border.
@@ -109,21 +112,22 @@ impl<S: Simd> Course<S> {
         tap.set_single(self.simd, offsets);
     }
 
-    /// Whether probes are [`PLAIN`].
+    /// A level for taps in whole numbers, 0 the finer one. Only where it [`wraps`](Self::wraps).
     #[inline(always)]
-    pub(super) fn is_plain(&self) -> bool {
-        self.modes == [AddressMode::Repeat; 2] && self.split.between_centres
+    pub(super) fn layer(&self, level: usize) -> Layer<S> {
+        Layer::of(self.simd, &self.placed[level], self.middle, self.stride)
+    }
+
+    /// Both.
+    #[inline(always)]
+    pub(super) fn layers(&self) -> [Layer<S>; 2] {
+        [self.layer(0), self.layer(1)]
     }
 
     /// Sets twice as many to those of a pair of probes on either side of the middle; returns what each probe counts
-    /// for. With [`PLAIN`] for `KIND` only if they are.
+    /// for.
     #[inline(always)]
-    pub(super) fn pair<const KIND: u8>(
-        &self,
-        line: &Line<S>,
-        pair: u32,
-        taps: &mut [Tap],
-    ) -> u32x16<S> {
+    pub(super) fn pair(&self, line: &Line<S>, pair: u32, taps: &mut [Tap]) -> u32x16<S> {
         let (cells, weight) = line.pair(self.simd, pair);
         let all = units(weight);
         let coarse = if self.levels == 1 {
@@ -134,29 +138,20 @@ impl<S: Simd> Course<S> {
         let (ds, dt) = (line.step_s * cells, line.step_t * cells);
         let [s, t] = self.middle;
         let (before, after) = taps.split_at_mut(self.levels);
-        self.probe::<KIND>([s - ds, t - dt], [all - coarse, coarse], before);
-        self.probe::<KIND>([s + ds, t + dt], [all - coarse, coarse], after);
+        self.probe([s - ds, t - dt], [all - coarse, coarse], before);
+        self.probe([s + ds, t + dt], [all - coarse, coarse], after);
         all
     }
 
     /// Sets the taps of a place on each level.
     #[inline(always)]
-    pub(super) fn probe<const KIND: u8>(
-        &self,
-        [s, t]: [f32x16<S>; 2],
-        weights: [u32x16<S>; 2],
-        taps: &mut [Tap],
-    ) {
-        let modes = match KIND {
-            PLAIN => [AddressMode::Repeat; 2],
-            _ => self.modes,
-        };
-        let s = fold(self.simd, modes[0], s);
-        let t = fold(self.simd, modes[1], t);
+    pub(super) fn probe(&self, [s, t]: [f32x16<S>; 2], weights: [u32x16<S>; 2], taps: &mut [Tap]) {
+        let s = fold(self.simd, self.modes[0], s);
+        let t = fold(self.simd, self.modes[1], t);
         let levels = self.placed.iter().zip(weights);
         for (tap, (placed, weight)) in taps.iter_mut().zip(levels) {
-            let (column, right) = self.split.texel::<KIND>(self.simd, s, placed.width);
-            let (row, lower) = self.split.texel::<KIND>(self.simd, t, placed.height);
+            let (column, right) = self.split.texel(self.simd, s, placed.width);
+            let (row, lower) = self.split.texel(self.simd, t, placed.height);
             let offsets = placed.origin + row * self.stride + column;
             let share = Share {
                 right,
@@ -170,7 +165,7 @@ impl<S: Simd> Course<S> {
 
 /// Of 0..=1, in units of 1/[`ONE`].
 #[inline(always)]
-fn units<S: Simd>(weight: f32x16<S>) -> u32x16<S> {
+pub(super) fn units<S: Simd>(weight: f32x16<S>) -> u32x16<S> {
     u32x16::truncate_from(weight * ONE as f32 + 0.5)
 }
 
@@ -197,13 +192,8 @@ impl<S: Simd> Split<S> {
 
     /// The first of two neighbouring texels on an axis of `size`, counted from the ring, and the weight of the second.
     #[inline(always)]
-    fn texel<const KIND: u8>(
-        &self,
-        simd: S,
-        place: f32x16<S>,
-        size: f32x16<S>,
-    ) -> (u32x16<S>, u32x16<S>) {
-        if KIND == PLAIN || self.between_centres {
+    fn texel(&self, simd: S, place: f32x16<S>, size: f32x16<S>) -> (u32x16<S>, u32x16<S>) {
+        if self.between_centres {
             // Half a texel more than the place: the ring is one wide, a centre half of one from its border.
             let units = u32x16::truncate_from(place * size + (ONE / 2) as f32);
             return (units >> ONE.ilog2(), units & (ONE - 1));

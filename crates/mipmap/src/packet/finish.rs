@@ -51,17 +51,11 @@ pub(super) fn summed<S: Simd, A: Sums<S>, F: Finish<S>>(
 ) -> F::Output {
     let mut sums = A::zero(simd);
     let stride = texture.sheet().stride() as usize;
+    let (list, step) = taps.list();
     if taps.are_blocks() {
-        for tap in taps.steps().flatten() {
-            sums.add_block(simd, texels, stride, tap);
-        }
+        sums.add_blocks(simd, texels, stride, list);
     } else {
-        for step in taps.steps() {
-            for tap in step {
-                sums.add(simd, texels, stride, tap);
-            }
-            sums.carry();
-        }
+        sums.add(simd, texels, stride, list, step);
     }
     F::finish(simd, sums, taps.total(simd))
 }

@@ -3,7 +3,7 @@
 use fearless_simd::prelude::*;
 use fearless_simd::{Simd, f32x16, f64x8, u32x16};
 use glam::UVec2;
-use sampler::packet::{ONE, Sheet};
+use sampler::packet::{LANES, LONGEST_WRAPPED_SIDE, ONE, Sheet};
 use sampler::{AddressMode, Addressing};
 
 use crate::pyramid::Pyramid;
@@ -206,19 +206,26 @@ impl PackedPyramid {
     /// coarser one, if there is one.
     #[inline(always)]
     pub(super) fn placed<S: Simd>(&self, simd: S, level: f32x16<S>) -> [Placed<S>; 2] {
-        let first = level[0];
-        if level.simd_eq(f32x16::splat(simd, first)).all_true() {
-            let index = level_index(first);
-            let next = (index + 1).min(self.places.len() - 1);
-            return [
-                self.places[index].everywhere(simd),
-                self.places[next].everywhere(simd),
-            ];
+        // Each lane beside its neighbour, and one of them by way of a store: `level[0]` moves the lanes one by one.
+        if level.simd_eq(level.slide::<1>(level)).all_true() {
+            let mut lanes = [0; LANES];
+            u32x16::truncate_from(level).store_slice(&mut lanes);
+            return self.placed_everywhere(simd, lanes[0] as usize);
         }
         let last = f32x16::splat(simd, (self.places.len() - 1) as f32);
         [
             self.placed_each(simd, level),
             self.placed_each(simd, (level + 1.0).min(last)),
+        ]
+    }
+
+    /// The same of one level.
+    #[inline(always)]
+    pub(super) fn placed_everywhere<S: Simd>(&self, simd: S, level: usize) -> [Placed<S>; 2] {
+        let next = (level + 1).min(self.places.len() - 1);
+        [
+            self.places[level].everywhere(simd),
+            self.places[next].everywhere(simd),
         ]
     }
 
@@ -245,6 +252,13 @@ impl PackedPyramid {
         }
     }
 
+    /// Whether the texture repeats and all sides of its levels are powers of two, at most [`LONGEST_WRAPPED_SIDE`].
+    #[inline(always)]
+    pub(super) fn wraps(&self) -> bool {
+        let side = |side: u32| side.is_power_of_two() && side <= LONGEST_WRAPPED_SIDE;
+        self.modes == [AddressMode::Repeat; 2] && side(self.size.x) && side(self.size.y)
+    }
+
     /// Fractional bits of a place in texels: as many as [`ONE`] has, but for sides of more than 65,536 texels.
     #[inline(always)]
     pub(super) fn fraction_bits(&self) -> u32 {
@@ -261,16 +275,6 @@ fn inverse_power<S: Simd>(simd: S, k: u32x16<S>) -> f32x16<S> {
 fn fraction_bits(size: UVec2) -> u32 {
     let longest = size.max_element().max(LONGEST_SIDE);
     ONE.ilog2() + LONGEST_SIDE.ilog2() - longest.next_power_of_two().ilog2()
-}
-
-#[allow(
-    clippy::cast_possible_truncation,
-    clippy::cast_sign_loss,
-    reason = "a whole number below 32"
-)]
-#[inline(always)]
-fn level_index(level: f32) -> usize {
-    level as usize
 }
 
 #[cfg(test)]

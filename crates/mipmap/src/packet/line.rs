@@ -19,6 +19,8 @@ pub(super) struct Line<S: Simd> {
     weights: Weights<S>,
     /// Pairs of probes of the lane that has most.
     pub(super) pairs: u32,
+    /// How many of them, the inner ones, count for 1 in every lane, and stand half a step further than their number.
+    pub(super) common: u32,
 }
 
 /// How the probes are weighted.
@@ -57,12 +59,17 @@ impl<S: Simd> Line<S> {
         let length = (ellipse.major_squared / (some.select(squared, one) * eta * eta)).sqrt();
         let (step_s, step_t) = (x * length * (1.0 / w), y * length * (1.0 / h));
         let (weights, pairs) = Weights::of(simd, eta, kind);
+        let common = match kind {
+            ProbeWeights::Equal => weights.whole.reduce_min(),
+            ProbeWeights::Gaussian => 0.0,
+        };
         Self {
             step_s: some.select(step_s, zero),
             step_t: some.select(step_t, zero),
             kind,
             weights,
             pairs: whole_number(pairs),
+            common: whole_number(common),
         }
     }
 

@@ -46,6 +46,7 @@ mod layout;
 mod line;
 mod plan;
 mod taps;
+mod wrapping;
 
 use fearless_simd::{Simd, f32x16};
 

@@ -4,10 +4,11 @@ use sampler::packet::{LANES, SheetTexels, Sums8, Sums16, SumsFloat, Tap, channel
 use sampler::{AddressMode, Filter};
 
 use super::bicubic::Kernels;
-use super::course::{ANY, Course, PLAIN};
+use super::course::Course;
 use super::finish::{Codes, Colours, pick, summed};
 use super::line::Line;
 use super::plan::{Plan, greatest_anisotropy};
+use super::wrapping::{middle, probes};
 use super::{PackedPyramid, PacketFootprint};
 use crate::sampler_state::{MipFilter, SamplerState};
 
@@ -160,21 +161,28 @@ impl Taps {
         if plan.is_line {
             let line = Line::of(simd, texture, plan, state.probe_weights);
             self.begin(2 * course.levels, line.pairs as usize);
-            let mut total = u32x16::splat(simd, 0);
-            let pairs = (0..).zip(self.list.chunks_exact_mut(self.a_step));
-            if course.is_plain() {
-                for (pair, taps) in pairs {
-                    total += course.pair::<PLAIN>(&line, pair, taps);
+            let total = match (course.wraps, course.levels) {
+                (true, 1) => {
+                    let layers = [course.layer(0)];
+                    probes(&layers, course.fraction, &line, &mut self.list)
                 }
-            } else {
-                for (pair, taps) in pairs {
-                    total += course.pair::<ANY>(&line, pair, taps);
+                (true, _) => probes(&course.layers(), course.fraction, &line, &mut self.list),
+                (false, _) => {
+                    let mut total = u32x16::splat(simd, 0);
+                    for (pair, taps) in (0..).zip(self.list.chunks_exact_mut(self.a_step)) {
+                        total += course.pair(&line, pair, taps);
+                    }
+                    total
                 }
-            }
+            };
             self.total = Some((total * 2).to_array());
         } else {
             self.begin(course.levels, 1);
-            course.middle(&mut self.list);
+            match (course.wraps, course.levels) {
+                (true, 1) => middle(&[course.layer(0)], course.fraction, &mut self.list),
+                (true, _) => middle(&course.layers(), course.fraction, &mut self.list),
+                (false, _) => course.middle(&mut self.list),
+            }
         }
     }
 
@@ -280,8 +288,10 @@ impl Taps {
         self.kind == Kind::Blocks
     }
 
-    pub(super) fn steps(&self) -> impl Iterator<Item = &[Tap]> {
-        self.list.chunks_exact(self.a_step.max(1))
+    /// All taps, and how many count for 2 at most.
+    #[inline(always)]
+    pub(super) fn list(&self) -> (&[Tap], usize) {
+        (&self.list, self.a_step.max(1))
     }
 
     #[inline(always)]

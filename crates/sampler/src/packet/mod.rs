@@ -13,6 +13,7 @@
 //!   lookup never asks which mode it has; one stride for all levels of a pyramid.
 //! * [`unit()`]: a coordinate, by its address mode, to its place in the texture.
 //! * [`Tap`]: where 2×2 texels stand and what each counts for. Sheets of one shape share taps.
+//! * [`Wrapped`]: taps in textures that repeat and whose sides are powers of two, placed in whole numbers.
 //! * [`BlockWeights`] and [`Span`]: taps of filters wider than 2×2 texels, block by block, which read beyond the ring.
 //! * [`Sums8`], [`Sums16`], [`SumsFloat`]: weighted sums of texels of a kind, all [`Sums`].
 //!
@@ -27,6 +28,7 @@ mod sheet;
 mod span;
 mod sums;
 mod tap;
+mod wrapped;
 
 pub use axis::{fold, held, unit};
 pub use lanes::channels;
@@ -34,6 +36,7 @@ pub use sheet::{Sheet, SheetTexels};
 pub use span::{Pair, Span, nearby};
 pub use sums::{ONE, Sums, Sums8, Sums16, SumsFloat, TAP_MAX_ERROR, codes};
 pub use tap::{BlockWeights, Share, Tap};
+pub use wrapped::{LONGEST_WRAPPED_SIDE, Wrapped};
 
 /// Lookups in a packet, on every instruction set.
 pub const LANES: usize = 16;

@@ -3,7 +3,7 @@
 use fearless_simd::prelude::*;
 use fearless_simd::{Simd, f32x16, i16x32, i32x16, u8x64, u16x32, u32x16, u64x8};
 
-use super::fetch::Quads;
+use super::fetch::{Quad, Quads};
 use super::lanes::{channels, repeated, repeated_floats};
 use super::tap::Tap;
 
@@ -22,23 +22,17 @@ pub trait Sums<S: Simd>: Copy {
     /// Nothing added yet.
     fn zero(simd: S) -> Self;
 
-    /// Adds a tap's texels to each lane's sum.
-    ///
-    /// After taps that count for 2 in all, [`Self::carry`] makes room for more.
+    /// Adds the texels of taps to each lane's sum. Any `step` of them, counted from the first, count for 2 at most.
     ///
     /// # Panics
-    /// If a lane's texels are not all on the sheet.
-    fn add(&mut self, simd: S, texels: &[Self::Texel], stride: usize, tap: &Tap);
-
-    /// Makes room for more taps, where sums are held in few bits.
-    #[inline(always)]
-    fn carry(&mut self) {}
+    /// If a lane's texels are not all on the sheet, or `step` is 0.
+    fn add(&mut self, simd: S, texels: &[Self::Texel], stride: usize, taps: &[Tap], step: usize);
 
     /// As [`Self::add`] of any weights, those of [`Tap::set_block`]. In [`Sums8`] the sum of their sizes is at most 2²³
     /// (512 times [`ONE`]), beyond which sums wrap.
     #[inline(always)]
-    fn add_block(&mut self, simd: S, texels: &[Self::Texel], stride: usize, tap: &Tap) {
-        self.add(simd, texels, stride, tap);
+    fn add_blocks(&mut self, simd: S, texels: &[Self::Texel], stride: usize, taps: &[Tap]) {
+        self.add(simd, texels, stride, taps, 1);
     }
 
     /// Adds the sums of another part of the same taps: rounding in f32 grows with the length of the parts.
@@ -92,20 +86,21 @@ impl<S: Simd> Sums<S> for Sums8<S> {
     }
 
     #[inline(always)]
-    fn add(&mut self, simd: S, texels: &[u64], stride: usize, tap: &Tap) {
-        let left = repeated(u32x16::from_slice(simd, &tap.left));
-        let right = repeated(u32x16::from_slice(simd, &tap.right));
-        let quads = Quads::new(simd, texels, stride, &tap.offsets);
+    fn add(&mut self, simd: S, texels: &[u64], stride: usize, taps: &[Tap], _step: usize) {
         let by_channel = u8x64::block_splat(BY_CHANNEL.simd_into(simd));
-        for group in 0..4 {
-            let mut columns = [[0u64; 2]; 4];
-            for (lane, columns) in columns.iter_mut().enumerate() {
-                *columns = quads.upper(4 * group + lane);
+        for quad in Quads::new(simd, texels, stride, taps).each() {
+            let left = repeated(u32x16::from_slice(simd, &quad.tap.left));
+            let right = repeated(u32x16::from_slice(simd, &quad.tap.right));
+            for group in 0..4 {
+                let mut columns = [[0u64; 2]; 4];
+                for (lane, columns) in columns.iter_mut().enumerate() {
+                    *columns = quad.upper(4 * group + lane);
+                }
+                let bytes: u8x64<S> = u64x8::from_slice(simd, columns.as_flattened()).bitcast();
+                let codes: u16x32<S> = bytes.swizzle_dyn_within_blocks(by_channel).bitcast();
+                self.0[group] += dot(codes & 0xff, left[group]);
+                self.0[group] += dot(codes >> 8, right[group]);
             }
-            let bytes: u8x64<S> = u64x8::from_slice(simd, columns.as_flattened()).bitcast();
-            let codes: u16x32<S> = bytes.swizzle_dyn_within_blocks(by_channel).bitcast();
-            self.0[group] += dot(codes & 0xff, left[group]);
-            self.0[group] += dot(codes >> 8, right[group]);
         }
     }
 
@@ -190,18 +185,29 @@ impl<S: Simd> Sums<S> for Sums16<S> {
     }
 
     #[inline(always)]
-    fn add(&mut self, simd: S, texels: &[u64], stride: usize, tap: &Tap) {
-        for (sum, [upper, lower]) in self.sums.iter_mut().zip(rows(simd, texels, stride, tap)) {
-            *sum += upper;
-            *sum += lower;
+    fn add(&mut self, simd: S, texels: &[u64], stride: usize, taps: &[Tap], step: usize) {
+        let quads = Quads::new(simd, texels, stride, taps);
+        let mut room = step;
+        for quad in quads.each() {
+            for (sum, [upper, lower]) in self.sums.iter_mut().zip(rows(simd, &quad)) {
+                *sum += upper;
+                *sum += lower;
+            }
+            room -= 1;
+            if room == 0 {
+                self.carry();
+                room = step;
+            }
         }
     }
 
     /// A row's products fill the integers.
     #[inline(always)]
-    fn add_block(&mut self, simd: S, texels: &[u64], stride: usize, tap: &Tap) {
-        for (sum, [upper, lower]) in self.carried.iter_mut().zip(rows(simd, texels, stride, tap)) {
-            *sum += f32x16::float_from(upper) + f32x16::float_from(lower);
+    fn add_blocks(&mut self, simd: S, texels: &[u64], stride: usize, taps: &[Tap]) {
+        for quad in Quads::new(simd, texels, stride, taps).each() {
+            for (sum, [upper, lower]) in self.carried.iter_mut().zip(rows(simd, &quad)) {
+                *sum += f32x16::float_from(upper) + f32x16::float_from(lower);
+            }
         }
     }
 
@@ -210,15 +216,6 @@ impl<S: Simd> Sums<S> for Sums16<S> {
         part.carry();
         for (sum, part) in self.carried.iter_mut().zip(part.carried) {
             *sum += part;
-        }
-    }
-
-    /// Codes less 2¹⁵ times 2·[`ONE`] fill the integers.
-    #[inline(always)]
-    fn carry(&mut self) {
-        for (carried, sum) in self.carried.iter_mut().zip(&mut self.sums) {
-            *carried += f32x16::float_from(*sum);
-            *sum -= *sum;
         }
     }
 
@@ -236,21 +233,31 @@ impl<S: Simd> Sums<S> for Sums16<S> {
     }
 }
 
+impl<S: Simd> Sums16<S> {
+    /// Codes less 2¹⁵ times 2·[`ONE`] fill the integers.
+    #[inline(always)]
+    fn carry(&mut self) {
+        for (carried, sum) in self.carried.iter_mut().zip(&mut self.sums) {
+            *carried += f32x16::float_from(*sum);
+            *sum -= *sum;
+        }
+    }
+}
+
 /// The weighted sums of each row of 2×2 texels, interleaved RGBA: four lanes after four.
 #[inline(always)]
-fn rows<S: Simd>(simd: S, texels: &[u64], stride: usize, tap: &Tap) -> [[i32x16<S>; 2]; 4] {
-    let left = u32x16::from_slice(simd, &tap.left);
-    let right = u32x16::from_slice(simd, &tap.right);
+fn rows<S: Simd>(simd: S, quad: &Quad<u64>) -> [[i32x16<S>; 2]; 4] {
+    let left = u32x16::from_slice(simd, &quad.tap.left);
+    let right = u32x16::from_slice(simd, &quad.tap.right);
     let upper = repeated((left & 0xffff) | (right << 16));
     let lower = repeated((left >> 16) | (right & 0xffff_0000));
-    let quads = Quads::new(simd, texels, stride, &tap.offsets);
     let beside = u8x64::block_splat(BESIDE.simd_into(simd));
     let mut sums = [[i32x16::splat(simd, 0); 2]; 4];
     for group in 0..4 {
         let (mut above, mut below) = ([[0u64; 2]; 4], [[0u64; 2]; 4]);
         for (lane, (above, below)) in above.iter_mut().zip(&mut below).enumerate() {
-            *above = quads.upper(4 * group + lane);
-            *below = quads.lower(4 * group + lane);
+            *above = quad.upper(4 * group + lane);
+            *below = quad.lower(4 * group + lane);
         }
         sums[group] = [
             row(simd, &above, beside, upper[group]),
@@ -303,20 +310,22 @@ impl<S: Simd> Sums<S> for SumsFloat<S> {
     }
 
     #[inline(always)]
-    fn add(&mut self, simd: S, texels: &[[f32; 4]], stride: usize, tap: &Tap) {
-        let weights = float_weights(simd, tap);
-        let quads = Quads::new(simd, texels, stride, &tap.offsets);
-        for group in 0..4 {
-            let mut colours = [[[0.0f32; 4]; 4]; 4];
-            for lane in 0..4 {
-                let from = 4 * group + lane;
-                let ([a, b], [c, d]) = (quads.upper(from), quads.lower(from));
-                for (colours, colour) in colours.iter_mut().zip([a, b, c, d]) {
-                    colours[lane] = colour;
+    fn add(&mut self, simd: S, texels: &[[f32; 4]], stride: usize, taps: &[Tap], _step: usize) {
+        for quad in Quads::new(simd, texels, stride, taps).each() {
+            let weights = float_weights(simd, quad.tap);
+            for group in 0..4 {
+                let mut colours = [[[0.0f32; 4]; 4]; 4];
+                for lane in 0..4 {
+                    let from = 4 * group + lane;
+                    let ([a, b], [c, d]) = (quad.upper(from), quad.lower(from));
+                    for (colours, colour) in colours.iter_mut().zip([a, b, c, d]) {
+                        colours[lane] = colour;
+                    }
                 }
-            }
-            for (colours, weights) in colours.iter().zip(&weights) {
-                self.0[group] += f32x16::from_slice(simd, colours.as_flattened()) * weights[group];
+                for (colours, weights) in colours.iter().zip(&weights) {
+                    let colours = f32x16::from_slice(simd, colours.as_flattened());
+                    self.0[group] += colours * weights[group];
+                }
             }
         }
     }

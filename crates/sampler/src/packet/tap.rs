@@ -108,12 +108,20 @@ fn parts_of<S: Simd>(weights: u32x16<S>, part: u32x16<S>) -> u32x16<S> {
     let doubled: u16x32<S> = (weights + weights).bitcast();
     // Twice the part, and 1, in both halves.
     let part: u16x32<S> = (part * 0x0002_0002 + 0x0001_0001).bitcast();
-    let (doubled, part) = (doubled.to_array(), part.to_array());
+    high_products(doubled, part)
+}
+
+/// The high halves of the products of halves.
+#[inline(always)]
+pub(super) fn high_products<S: Simd>(a: u16x32<S>, b: u16x32<S>) -> u32x16<S> {
     let mut high = [0; 2 * LANES];
-    for (high, (a, b)) in high.iter_mut().zip(doubled.into_iter().zip(part)) {
+    for (high, (a, b)) in high
+        .iter_mut()
+        .zip(a.to_array().into_iter().zip(b.to_array()))
+    {
         *high = high_half(u32::from(a) * u32::from(b));
     }
-    let high: u16x32<S> = high.simd_into(weights.simd);
+    let high: u16x32<S> = high.simd_into(a.simd);
     high.bitcast()
 }
 

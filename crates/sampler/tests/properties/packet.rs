@@ -120,9 +120,9 @@ proptest! {
             tap.set(u32x16::simd_from(simd, offsets), &share);
             let total = share.weight;
             let (mut a, mut b, mut c) = (Sums8::zero(simd), Sums16::zero(simd), SumsFloat::zero(simd));
-            a.add(simd, &pairs, STRIDE, &tap);
-            b.add(simd, &wide, STRIDE, &tap);
-            c.add(simd, &floats, STRIDE, &tap);
+            a.add(simd, &pairs, STRIDE, &[tap], 1);
+            b.add(simd, &wide, STRIDE, &[tap], 1);
+            c.add(simd, &floats, STRIDE, &[tap], 1);
             [a.channels(simd, total), b.channels(simd, total), c.channels(simd, total)]
                 .map(|channels| channels.map(|channel| channel.to_array()))
         });
@@ -168,6 +168,6 @@ fn texels_beyond_the_sheet_are_not_read() {
         let share = Share { right: units, lower: units, weight: units };
         let mut tap = Tap::NONE;
         tap.set(u32x16::splat(simd, 11), &share);
-        Sums8::zero(simd).add(simd, &[0; 16], 4, &tap);
+        Sums8::zero(simd).add(simd, &[0; 16], 4, &[tap], 1);
     });
 }

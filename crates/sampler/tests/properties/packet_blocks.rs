@@ -28,9 +28,9 @@ proptest! {
             tap.set_block(u32x16::simd_from(simd, offsets), &block);
             let total: u32x16<_> = block.total().max(1).bitcast();
             let (mut a, mut b, mut c) = (Sums8::zero(simd), Sums16::zero(simd), SumsFloat::zero(simd));
-            a.add_block(simd, &pairs, STRIDE, &tap);
-            b.add_block(simd, &wide, STRIDE, &tap);
-            c.add_block(simd, &floats, STRIDE, &tap);
+            a.add_blocks(simd, &pairs, STRIDE, &[tap]);
+            b.add_blocks(simd, &wide, STRIDE, &[tap]);
+            c.add_blocks(simd, &floats, STRIDE, &[tap]);
             [a.channels(simd, total), b.channels(simd, total), c.channels(simd, total)]
                 .map(|channels| channels.map(|channel| channel.to_array()))
         });

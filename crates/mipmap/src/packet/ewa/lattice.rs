@@ -7,7 +7,7 @@ use super::shape::Shape;
 use crate::ewa::{EwaTier, SIGMA};
 use crate::lod::round_to_f32;
 use crate::packet::PackedPyramid;
-use crate::packet::course::{ANY, Course};
+use crate::packet::course::Course;
 use crate::packet::gaussian::gaussian;
 
 /// Points along the axes of sixteen footprints, as [`crate::ewa`] has them: the bilinear reconstruction of level 0,
@@ -82,9 +82,8 @@ impl<S: Simd> Lattice<S> {
                 let weight = u32x16::truncate_from(gaussian(simd, u) * self.scale + offset);
                 total += weight;
                 let place = [s + self.along[0] * x, t + self.along[1] * x];
-                course.probe::<ANY>(place, [weight; 2], &mut taps);
-                part.add(simd, texels, stride, &taps[0]);
-                part.carry();
+                course.probe(place, [weight; 2], &mut taps);
+                part.add(simd, texels, stride, &taps, 1);
             }
             sums.add_part(part);
         }

@@ -201,10 +201,10 @@ impl<'a, S: Simd, T> Averages<'a, S, T> {
             return taps.sample(simd, texture);
         }
         let stride = texture.sheet().stride();
-        let (mut sums, mut tap) = (A::zero(simd), Tap::NONE);
+        let (mut sums, mut taps) = (A::zero(simd), [Tap::NONE]);
         // Within the ring.
-        tap.set_single(simd, placed.origin + (stride + 1));
-        sums.add(simd, self.texels, stride as usize, &tap);
+        taps[0].set_single(simd, placed.origin + (stride + 1));
+        sums.add(simd, self.texels, stride as usize, &taps, 1);
         sums.channels(simd, u32x16::splat(simd, ONE))
     }
 }

@@ -134,7 +134,7 @@ impl<S: Simd> Oval<S> {
         let spans = self.spans(simd, texture, placed);
         let blocks = Blocks::new(simd, texture, placed, spans);
         let stride = texture.sheet().stride() as usize;
-        let mut tap = Tap::NONE;
+        let mut taps = [Tap::NONE];
         let [column, row] = self.texel;
         let first_row = (self.middle[1] - self.half[1]).ceil();
         let last_row = (self.middle[1] + self.half[1]).floor();
@@ -154,8 +154,8 @@ impl<S: Simd> Oval<S> {
                 let x = first + pair as f32 * 2.0;
                 let weights = self.weights(simd, x, &chords);
                 total += weights.total();
-                blocks.set(&mut tap, &rows, column + x, &weights);
-                part.add_block(simd, texels, stride, &tap);
+                blocks.set(&mut taps[0], &rows, column + x, &weights);
+                part.add_blocks(simd, texels, stride, &taps);
             }
             sums.add_part(part);
         }
