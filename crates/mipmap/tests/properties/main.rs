@@ -13,6 +13,7 @@ mod ewa;
 mod filtering;
 mod finest;
 mod footprint;
+mod grazing_plane;
 mod kernels;
 mod lod;
 mod oracle;
