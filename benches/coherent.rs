@@ -14,7 +14,7 @@ use sampler::{AddressMode, Filter, Texels, Texture, Transfer};
 /// Texels along an edge.
 const SIDE: u32 = 2048;
 /// Pixels across and down.
-const PIXELS: [usize; 2] = [512, 512];
+const PIXELS: [usize; 2] = [1024, 4096];
 /// How far the rows of pixels are turned in the texture, radians.
 const TURN: f32 = 0.2;
 /// Texels of the minor axis of filters with levels. The way from a pixel to the next is one texel.
