@@ -63,7 +63,7 @@
 //! | [`solid`] checkers, stripes, grids over a box | 1e-6 | `tests/properties/solid_regular.rs` |
 //! | [`bicubic`] | [`BICUBIC_MAX_ERROR_ULPS`] ulp of the largest texel read | `tests/properties/bicubic.rs` |
 //! | [`packet::Sums`] of taps | [`packet::TAP_MAX_ERROR`] | `tests/properties/packet.rs` |
-//! | [`packet::Sums::add_block`] | 1e-5 of the mean, for weights that add up to ¼ and more | `tests/properties/packet_blocks.rs` |
+//! | [`packet::Sums::add_blocks`] | 1e-5 of the mean, for weights that add up to ¼ and more | `tests/properties/packet_blocks.rs` |
 //! | [`tile::make_tileable`] | mean 3 % of the range, deviation 10 % | `tests/properties/tile.rs` |
 //! | sRGB decode, 8 and 16 bit | nearest f32 | `tests/properties/transfer.rs` |
 //! | sRGB encode, 8 bit | exactly rounded for all 2³² inputs | `tests/properties/transfer.rs` |
