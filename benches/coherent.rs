@@ -1,5 +1,5 @@
 //! Lookups of neighbouring pixels, sixteen at a time, on one thread: what a core reads of a texture that its nearest
-//! caches do not hold. Ids `mipmap/coherent/FILTER/TEXELS`; the error of these filters is in `mipmap/filter_packet`.
+//! caches do not hold, and of one that its first holds. Ids `mipmap/coherent/FILTER/TEXELS`; the error of these filters is in `mipmap/filter_packet`.
 
 use std::hint::black_box;
 use std::time::Duration;
@@ -11,8 +11,9 @@ use mipmap::packet::{PackedPyramid, PacketFootprint, ROW, Taps};
 use mipmap::{Content, MipFilter, Pyramid, SamplerState};
 use sampler::{AddressMode, Filter, Texels, Texture, Transfer};
 
-/// Texels along an edge.
-const SIDE: u32 = 2048;
+/// Texels along an edge, of the large texture and of the small one.
+const LARGE: u32 = 2048;
+const SMALL: u32 = 64;
 /// Pixels across and down.
 const PIXELS: [usize; 2] = [1024, 4096];
 /// How far the rows of pixels are turned in the texture, radians.
@@ -31,7 +32,12 @@ pub(crate) fn bench(criterion: &mut Criterion) {
         .warm_up_time(Duration::from_millis(300))
         .measurement_time(Duration::from_secs(1))
         .throughput(Throughput::Elements((PIXELS[0] * PIXELS[1]) as u64));
-    for (texels, texture) in [("u8", eight_bits()), ("f32", floats())] {
+    for (texels, texture) in [
+        ("u8", eight_bits(LARGE)),
+        ("f32", floats(LARGE)),
+        ("u8-small", eight_bits(SMALL)),
+    ] {
+        let side = texture.size().x;
         let pyramid = Pyramid::build(texture, Content::Data).expect("data of any format");
         let packed = PackedPyramid::new(&pyramid, &[AddressMode::Repeat; 2].into());
         for (name, filter, mip, aspect) in [
@@ -48,17 +54,17 @@ pub(crate) fn bench(criterion: &mut Criterion) {
                 max_anisotropy: aspect,
                 ..SamplerState::default()
             };
-            let walk = Walk::new(aspect);
+            let walk = Walk::new(aspect, side);
             let mut taps: [Taps; ROW] = Default::default();
             // 8 bits to codes, floats to floats.
             let mut out = vec![0; PIXELS[0]];
             group.bench_function(BenchmarkId::new(name, texels), |b| {
                 b.iter(|| {
                     dispatch!(Level::new(), simd => {
-                        if texels == "u8" {
-                            walk.codes(simd, &packed, &state, &mut taps, &mut out);
-                        } else {
+                        if texels == "f32" {
                             walk.floats(simd, &packed, &state, &mut taps);
+                        } else {
+                            walk.codes(simd, &packed, &state, &mut taps, &mut out);
                         }
                     });
                     black_box(&out);
@@ -79,8 +85,8 @@ struct Walk {
 }
 
 impl Walk {
-    fn new(aspect: f32) -> Self {
-        let texels = |v: Vec2| v / SIDE as f32;
+    fn new(aspect: f32, side: u32) -> Self {
+        let texels = |v: Vec2| v / side as f32;
         let step = texels(Vec2::from_angle(TURN));
         let across = texels(Vec2::from_angle(ACROSS) * MINOR);
         Self {
@@ -167,18 +173,18 @@ impl Walk {
 }
 
 /// What [`noise`] says, as codes.
-fn eight_bits() -> Texture {
-    let texels = (0..4 * SIDE * SIDE).map(|k| noise(k).to_le_bytes()[3]);
-    texture(Texels::U8(texels.collect()))
+fn eight_bits(side: u32) -> Texture {
+    let texels = (0..4 * side * side).map(|k| noise(k).to_le_bytes()[3]);
+    texture(side, Texels::U8(texels.collect()))
 }
 
-fn floats() -> Texture {
-    let texels = (0..4 * SIDE * SIDE).map(|k| (noise(k) >> 8) as f32 / 16_777_216.0);
-    texture(Texels::F32(texels.collect()))
+fn floats(side: u32) -> Texture {
+    let texels = (0..4 * side * side).map(|k| (noise(k) >> 8) as f32 / 16_777_216.0);
+    texture(side, Texels::F32(texels.collect()))
 }
 
-fn texture(texels: Texels) -> Texture {
-    Texture::new(UVec2::splat(SIDE), 4, Transfer::Linear, texels).expect("four values a texel")
+fn texture(side: u32, texels: Texels) -> Texture {
+    Texture::new(UVec2::splat(side), 4, Transfer::Linear, texels).expect("four values a texel")
 }
 
 /// A hash.

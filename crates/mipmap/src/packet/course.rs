@@ -7,10 +7,10 @@ use sampler::{AddressMode, Filter};
 
 use super::layout::Placed;
 use super::line::Line;
-use super::plan::Plan;
+use super::plan::{Plan, has_one_level};
 use super::wrapping::Layer;
 use super::{PackedPyramid, PacketFootprint};
-use crate::sampler_state::{MipFilter, SamplerState};
+use crate::sampler_state::SamplerState;
 
 /// Where a packet's taps are: one place on one or two levels, or pairs of probes on either side of it.
 pub(super) struct Course<S: Simd> {
@@ -50,7 +50,7 @@ impl<S: Simd> Course<S> {
         plan: &Plan<S>,
     ) -> Self {
         let split = Split::of(simd, texture, state, plan.minified);
-        let one_level = texture.levels() == 1 || state.mip == MipFilter::None;
+        let one_level = has_one_level(texture, state);
         let placed = if one_level {
             texture.placed_everywhere(simd, texture.finest() as usize)
         } else {

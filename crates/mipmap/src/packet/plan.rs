@@ -15,6 +15,12 @@ pub(super) fn greatest_anisotropy(state: &SamplerState) -> f32 {
     f32::min(state.max_anisotropy.max(1.0), MAX_ANISOTROPY)
 }
 
+/// Whether every lane reads the finest level alone, whatever its footprint.
+#[inline(always)]
+pub(super) fn has_one_level(texture: &PackedPyramid, state: &SamplerState) -> bool {
+    texture.levels() == 1 || state.mip == MipFilter::None
+}
+
 /// What each lane reads.
 #[derive(Clone, Copy)]
 pub(super) struct Plan<S: Simd> {
@@ -56,8 +62,7 @@ impl<S: Simd> Plan<S> {
         let zero = f32x16::splat(simd, 0.0);
         let one = f32x16::splat(simd, 1.0);
         let max_anisotropy = greatest_anisotropy(state);
-        let one_level = texture.levels() == 1 || state.mip == MipFilter::None;
-        if one_level && state.magnify == state.minify && max_anisotropy == 1.0 {
+        if has_one_level(texture, state) && state.magnify == state.minify && max_anisotropy == 1.0 {
             return Self {
                 fine: f32x16::splat(simd, texture.stored()[0]),
                 fraction: zero,

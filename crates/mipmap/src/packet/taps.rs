@@ -291,7 +291,7 @@ impl Taps {
     /// All taps, and how many count for 2 at most.
     #[inline(always)]
     pub(super) fn list(&self) -> (&[Tap], usize) {
-        (&self.list, self.a_step.max(1))
+        (&self.list, self.a_step)
     }
 
     #[inline(always)]

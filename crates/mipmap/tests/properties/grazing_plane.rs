@@ -92,7 +92,8 @@ fn packet(texture: &PackedPyramid, state: &SamplerState, pixels: [UVec2; 16]) ->
 }
 
 /// 0.0184 is the least error that the best-tuned of other libraries was measured to have on this plane (OpenImageIO 3.2,
-/// 32 probes, bicubic where magnified, widths 0.65); with 16 probes 0.0229, as it comes 0.0541.
+/// 32 probes, bicubic where magnified, widths 0.65); with 16 probes 0.0229, as it comes 0.0541. With
+/// 4 probes as it comes 0.0252.
 #[test]
 fn anisotropic_lookups_err_less_than_the_best_of_others() {
     let texels = (0..SIDE * SIDE).map(|k| {

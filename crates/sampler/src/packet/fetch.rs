@@ -1,7 +1,8 @@
 //! Texels at sixteen offsets, checked once; and asked for before they are read.
 //!
 //! A checked index a texel costs as much as the rest of a lookup: of bilinear 8-bit lookups 280 instead of 470 million
-//! a second. So the greatest offset of a packet's taps is checked for all, and this module alone reads without asking again.
+//! a second. So the greatest offset of a packet's taps is checked for all, and this module alone reads without asking
+//! again.
 #![allow(
     unsafe_code,
     reason = "one check a packet instead of one a texel: a third of a lookup's time"

@@ -22,10 +22,11 @@ pub trait Sums<S: Simd>: Copy {
     /// Nothing added yet.
     fn zero(simd: S) -> Self;
 
-    /// Adds the texels of taps to each lane's sum. Any `step` of them, counted from the first, count for 2 at most.
+    /// Adds the texels of taps to each lane's sum. Every `step` of them, counted from the first, count for 2 at most; 0
+    /// means 1.
     ///
     /// # Panics
-    /// If a lane's texels are not all on the sheet, or `step` is 0.
+    /// If a lane's texels are not all on the sheet.
     fn add(&mut self, simd: S, texels: &[Self::Texel], stride: usize, taps: &[Tap], step: usize);
 
     /// As [`Self::add`] of any weights, those of [`Tap::set_block`]. In [`Sums8`] the sum of their sizes is at most 2²³
@@ -187,6 +188,7 @@ impl<S: Simd> Sums<S> for Sums16<S> {
     #[inline(always)]
     fn add(&mut self, simd: S, texels: &[u64], stride: usize, taps: &[Tap], step: usize) {
         let quads = Quads::new(simd, texels, stride, taps);
+        let step = step.max(1);
         let mut room = step;
         for quad in quads.each() {
             for (sum, [upper, lower]) in self.sums.iter_mut().zip(rows(simd, &quad)) {

@@ -79,7 +79,7 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
-    use crate::packet::{LANES, ONE};
+    use crate::packet::{LANES, ONE, TAP_MAX_ERROR};
 
     const STRIDE: u32 = 24_580;
 
@@ -93,6 +93,18 @@ mod tests {
             let (left, right) = (tap.left[LANES - 1], tap.right[LANES - 1]);
             (tap.offsets[LANES - 1], [left & 0xffff, right & 0xffff, left >> 16, right >> 16])
         })
+    }
+
+    /// The four texels' parts of a place, row by row.
+    fn shares(column: u32, row: u32) -> [f64; 4] {
+        let part = |place: u32| f64::from(place & 0xffff) / 65_536.0;
+        let (right, lower) = (part(column), part(row));
+        [
+            (1.0 - lower) * (1.0 - right),
+            (1.0 - lower) * right,
+            lower * (1.0 - right),
+            lower * right,
+        ]
     }
 
     #[test]
@@ -122,18 +134,23 @@ mod tests {
             let texel = [(column >> 16) & last[0], (row >> 16) & last[1]];
             prop_assert_eq!(first, 7 + texel[1] * STRIDE + texel[0]);
             prop_assert_eq!(weights.iter().sum::<u32>(), weight);
-            let part = |place: u32| f64::from(place & 0xffff) / 65_536.0;
-            let (right, lower) = (part(column), part(row));
-            let shares = [
-                (1.0 - lower) * (1.0 - right),
-                (1.0 - lower) * right,
-                lower * (1.0 - right),
-                lower * right,
-            ];
-            for (found, share) in weights.into_iter().zip(shares) {
+            for (found, share) in weights.into_iter().zip(shares(column, row)) {
                 let exact = f64::from(weight) * share;
                 prop_assert!((f64::from(found) - exact).abs() < 2.0, "{found} {exact}");
             }
+        }
+
+        #[test]
+        fn the_blend_is_within_the_bound_of_taps(
+            column in 0..65_536u32 - 3,
+            row in 0..65_536u32 - 2,
+            texels in proptest::array::uniform4(0.0..=1.0f64),
+        ) {
+            let (_, weights) = tap([1; 2], [column + 3, row + 2], ONE);
+            let blend = |shares: [f64; 4]| shares.iter().zip(texels).map(|(w, t)| w * t).sum::<f64>();
+            let found = blend(weights.map(|weight| f64::from(weight) / f64::from(ONE)));
+            let error = (found - blend(shares(column, row))).abs();
+            prop_assert!(error <= f64::from(TAP_MAX_ERROR), "{error:e}");
         }
     }
 }
