@@ -9,7 +9,7 @@ use super::blocks::{Blocks, texels_of};
 use super::layout::Placed;
 use super::line::Line;
 use super::plan::Plan;
-use super::{PackedPyramid, PacketFootprint};
+use super::PackedPyramid;
 use crate::sampler_state::SamplerState;
 
 /// The filter of each lane.
@@ -59,7 +59,7 @@ impl<S: Simd> Kernels<S> {
         texture: &PackedPyramid,
         plan: &Plan<S>,
         line: Option<&Line<S>>,
-        footprint: &PacketFootprint<S>,
+        [s, t]: [f32x16<S>; 2],
         taps: &mut Vec<Tap>,
     ) -> u32x16<S> {
         let (zero, one) = (f32x16::splat(simd, 0.0), f32x16::splat(simd, 1.0));
@@ -87,8 +87,8 @@ impl<S: Simd> Kernels<S> {
             for &side in sides {
                 let [s_mode, t_mode] = texture.modes();
                 let place = [
-                    nearby(simd, s_mode, footprint.s + ds * side, FARTHEST),
-                    nearby(simd, t_mode, footprint.t + dt * side, FARTHEST),
+                    nearby(simd, s_mode, s + ds * side, FARTHEST),
+                    nearby(simd, t_mode, t + dt * side, FARTHEST),
                 ];
                 let parts = [one - plan.fraction, plan.fraction];
                 for (level, part) in levels.iter().zip(parts) {

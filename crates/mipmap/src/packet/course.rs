@@ -9,7 +9,7 @@ use super::layout::Placed;
 use super::line::Line;
 use super::plan::{Plan, has_one_level};
 use super::wrapping::Layer;
-use super::{PackedPyramid, PacketFootprint};
+use super::PackedPyramid;
 use crate::sampler_state::SamplerState;
 
 /// Where a packet's taps are: one place on one or two levels, or pairs of probes on either side of it.
@@ -46,7 +46,7 @@ impl<S: Simd> Course<S> {
         simd: S,
         texture: &PackedPyramid,
         state: &SamplerState,
-        footprint: &PacketFootprint<S>,
+        [s, t]: [f32x16<S>; 2],
         plan: &Plan<S>,
     ) -> Self {
         let split = Split::of(simd, texture, state, plan.minified);
@@ -61,7 +61,7 @@ impl<S: Simd> Course<S> {
             simd,
             modes: texture.modes(),
             stride: texture.sheet().stride(),
-            middle: [held(simd, footprint.s), held(simd, footprint.t)],
+            middle: [held(simd, s), held(simd, t)],
             placed,
             levels: 1 + usize::from(!one_level && plan.fraction.simd_gt(0.0).any_true()),
             fraction: plan.fraction,

@@ -21,6 +21,14 @@ pub(super) fn has_one_level(texture: &PackedPyramid, state: &SamplerState) -> bo
     texture.levels() == 1 || state.mip == MipFilter::None
 }
 
+/// Whether footprints of any size are read alike: one tap of the finest level.
+#[inline(always)]
+pub(super) fn has_one_plan(texture: &PackedPyramid, state: &SamplerState) -> bool {
+    has_one_level(texture, state)
+        && state.magnify == state.minify
+        && greatest_anisotropy(state) == 1.0
+}
+
 /// What each lane reads.
 #[derive(Clone, Copy)]
 pub(super) struct Plan<S: Simd> {
@@ -50,6 +58,25 @@ pub(super) struct Ellipse<S: Simd> {
 }
 
 impl<S: Simd> Plan<S> {
+    /// The plan of all footprints of a texture that [`has_one_plan`].
+    #[inline(always)]
+    pub(super) fn fixed(simd: S, texture: &PackedPyramid) -> Self {
+        let (zero, one) = (f32x16::splat(simd, 0.0), f32x16::splat(simd, 1.0));
+        Self {
+            fine: f32x16::splat(simd, texture.stored()[0]),
+            fraction: zero,
+            minified: zero.simd_eq(one),
+            eta: one,
+            ellipse: Ellipse {
+                bounded: zero.simd_eq(zero),
+                major_squared: one,
+                determinant: one,
+                along: [zero; 2],
+            },
+            is_line: false,
+        }
+    }
+
     /// `most`: the greatest aspect that each lane follows, 1 and more, but never more than the state does.
     #[inline(always)]
     pub(super) fn of(
@@ -62,22 +89,6 @@ impl<S: Simd> Plan<S> {
         let zero = f32x16::splat(simd, 0.0);
         let one = f32x16::splat(simd, 1.0);
         let max_anisotropy = greatest_anisotropy(state);
-        if has_one_level(texture, state) && state.magnify == state.minify && max_anisotropy == 1.0 {
-            return Self {
-                fine: f32x16::splat(simd, texture.stored()[0]),
-                fraction: zero,
-                minified: zero.simd_eq(one),
-                eta: one,
-                ellipse: Ellipse {
-                    bounded: zero.simd_eq(zero),
-                    major_squared: one,
-                    determinant: one,
-                    along: [zero; 2],
-                },
-                is_line: false,
-            };
-        }
-
         let ellipse = Ellipse::of(simd, texture, state.lod_rule, footprint);
         let mut lambda = packet_log2(simd, ellipse.major_squared) * 0.5;
         let mut eta = one;

@@ -7,7 +7,7 @@ use super::bicubic::Kernels;
 use super::course::Course;
 use super::finish::{Codes, Colours, pick, summed};
 use super::line::Line;
-use super::plan::{Plan, greatest_anisotropy};
+use super::plan::{Plan, greatest_anisotropy, has_one_plan};
 use super::wrapping::{middle, probes};
 use super::{PackedPyramid, PacketFootprint};
 use crate::sampler_state::{MipFilter, SamplerState};
@@ -84,28 +84,30 @@ impl Taps {
         row: &mut [Self],
         mut footprint: impl FnMut(usize) -> PacketFootprint<S>,
     ) {
-        let one_level = state.mip == MipFilter::None && state.max_anisotropy.max(1.0) == 1.0;
-        if one_level || Kind::of(texture, state) == Kind::Picked || row.is_empty() {
+        if has_one_plan(texture, state) {
+            let plan = Plan::fixed(simd, texture);
             for (k, taps) in row.iter_mut().enumerate() {
-                taps.find(simd, texture, state, &footprint(k));
+                // Its size is not asked for, and so not computed.
+                let PacketFootprint { s, t, .. } = footprint(k);
+                taps.find_planned(simd, texture, state, [s, t], &plan);
             }
             return;
         }
-        let mut footprints = [footprint(0); ROW];
-        for (k, place) in footprints[..row.len()].iter_mut().enumerate().skip(1) {
-            *place = footprint(k);
+        let mut footprints = [None; ROW];
+        for (k, place) in footprints[..row.len()].iter_mut().enumerate() {
+            *place = Some(footprint(k));
         }
         simd.vectorize(
             #[inline(always)]
             || {
                 let most = f32x16::splat(simd, greatest_anisotropy(state));
-                let mut plans = [Plan::of(simd, texture, state, most, &footprints[0]); ROW];
-                for (plan, footprint) in plans[..row.len()].iter_mut().zip(&footprints).skip(1) {
-                    *plan = Plan::of(simd, texture, state, most, footprint);
+                let mut plans = [None; ROW];
+                for (plan, footprint) in plans.iter_mut().zip(footprints.iter().flatten()) {
+                    *plan = Some(Plan::of(simd, texture, state, most, footprint));
                 }
-                for ((taps, footprint), plan) in row.iter_mut().zip(&footprints).zip(&plans) {
-                    taps.kind = Kind::Weighted;
-                    taps.find_weighted(simd, texture, state, footprint, plan);
+                let plans = footprints.iter().flatten().zip(plans.iter().flatten());
+                for (taps, (footprint, plan)) in row.iter_mut().zip(plans) {
+                    taps.set(simd, texture, state, [footprint.s, footprint.t], plan);
                 }
             },
         );
@@ -121,43 +123,90 @@ impl Taps {
         most: f32x16<S>,
         footprint: &PacketFootprint<S>,
     ) {
-        self.kind = Kind::of(texture, state);
-        if self.kind == Kind::Picked {
-            // So little work that a call would be half of it.
-            let plan = Plan::of(simd, texture, state, most, footprint);
-            let course = Course::new(simd, texture, state, footprint, &plan);
-            self.begin(1, 1);
-            course.nearest(&mut self.list[0]);
+        let place = [footprint.s, footprint.t];
+        if has_one_plan(texture, state) {
+            self.find_planned(simd, texture, state, place, &Plan::fixed(simd, texture));
         } else {
             simd.vectorize(
                 #[inline(always)]
                 || {
                     let plan = Plan::of(simd, texture, state, most, footprint);
-                    self.find_weighted(simd, texture, state, footprint, &plan);
+                    self.set(simd, texture, state, place, &plan);
                 },
             );
         }
     }
 
     #[inline(always)]
-    fn find_weighted<S: Simd>(
+    fn find_planned<S: Simd>(
         &mut self,
         simd: S,
         texture: &PackedPyramid,
         state: &SamplerState,
-        footprint: &PacketFootprint<S>,
+        place: [f32x16<S>; 2],
         plan: &Plan<S>,
     ) {
+        if Kind::of(texture, state) == Kind::Picked {
+            // So little work that a call would be half of it.
+            self.set_picked(simd, texture, state, place, plan);
+        } else {
+            simd.vectorize(
+                #[inline(always)]
+                || self.set(simd, texture, state, place, plan),
+            );
+        }
+    }
+
+    /// Sets the taps at a place, (s,t), by what was planned for it.
+    #[inline(always)]
+    fn set<S: Simd>(
+        &mut self,
+        simd: S,
+        texture: &PackedPyramid,
+        state: &SamplerState,
+        place: [f32x16<S>; 2],
+        plan: &Plan<S>,
+    ) {
+        match Kind::of(texture, state) {
+            Kind::Picked => self.set_picked(simd, texture, state, place, plan),
+            _ => self.set_weighted(simd, texture, state, place, plan),
+        }
+    }
+
+    #[inline(always)]
+    fn set_picked<S: Simd>(
+        &mut self,
+        simd: S,
+        texture: &PackedPyramid,
+        state: &SamplerState,
+        place: [f32x16<S>; 2],
+        plan: &Plan<S>,
+    ) {
+        self.kind = Kind::Picked;
+        self.begin(1, 1);
+        Course::new(simd, texture, state, place, plan).nearest(&mut self.list[0]);
+    }
+
+    #[inline(always)]
+    fn set_weighted<S: Simd>(
+        &mut self,
+        simd: S,
+        texture: &PackedPyramid,
+        state: &SamplerState,
+        place: [f32x16<S>; 2],
+        plan: &Plan<S>,
+    ) {
+        self.kind = Kind::Weighted;
         let cubic = [state.magnify, state.minify]
             .iter()
             .any(|filter| matches!(filter, Filter::Bicubic(_)));
         if cubic && let Some(kernels) = Kernels::of(simd, state, plan.minified) {
             return simd.vectorize(
                 #[inline(always)]
-                || self.find_cubic(simd, texture, state, footprint, plan, &kernels),
+                || self.set_cubic(simd, texture, state, place, plan, &kernels),
             );
         }
-        let course = Course::new(simd, texture, state, footprint, plan);
+        let course = Course::new(simd, texture, state, place, plan);
         if plan.is_line {
             let line = Line::of(simd, texture, plan, state.probe_weights);
             self.begin(2 * course.levels, line.pairs as usize);
@@ -187,12 +236,12 @@ impl Taps {
     }
 
     #[inline(always)]
-    fn find_cubic<S: Simd>(
+    fn set_cubic<S: Simd>(
         &mut self,
         simd: S,
         texture: &PackedPyramid,
         state: &SamplerState,
-        footprint: &PacketFootprint<S>,
+        place: [f32x16<S>; 2],
         plan: &Plan<S>,
         kernels: &Kernels<S>,
     ) {
@@ -200,9 +249,9 @@ impl Taps {
         self.a_step = 1;
         let total = if plan.is_line {
             let line = Line::of(simd, texture, plan, state.probe_weights);
-            kernels.find(simd, texture, plan, Some(&line), footprint, &mut self.list)
+            kernels.find(simd, texture, plan, Some(&line), place, &mut self.list)
         } else {
-            kernels.find(simd, texture, plan, None, footprint, &mut self.list)
+            kernels.find(simd, texture, plan, None, place, &mut self.list)
         };
         self.total = Some(total.to_array());
     }
