@@ -127,6 +127,9 @@ impl Walk {
         for y in 0..PIXELS[1] {
             for (group, out) in out.chunks_exact_mut(GROUP).enumerate() {
                 self.find(simd, texture, state, taps, [group * GROUP, y]);
+                if state.max_anisotropy > 1.0 {
+                    taps.iter().for_each(|taps| taps.prefetch(texture));
+                }
                 for (taps, out) in taps.iter().zip(out.chunks_exact_mut(16)) {
                     taps.write_codes(simd, texture, out);
                 }
@@ -145,6 +148,7 @@ impl Walk {
         for y in 0..PIXELS[1] {
             for group in 0..PIXELS[0] / GROUP {
                 self.find(simd, texture, state, taps, [group * GROUP, y]);
+                taps.iter().for_each(|taps| taps.prefetch(texture));
                 for taps in taps.iter() {
                     black_box(taps.sample(simd, texture));
                 }
