@@ -118,7 +118,7 @@ impl CoordinatePlanes {
         }
     }
 
-    /// Coordinates at 16 pixels: the first lies `x` and `y` pixels from the origin, the others to its right.
+    /// Coordinates at 16 pixels: the first lies so many from the origin, `at`, the others to its right.
     ///
     /// # Accuracy
     /// For 16 pixels inside the triangle. With m the largest term of D, at the origin or between it and the pixels, over
@@ -127,8 +127,29 @@ impl CoordinatePlanes {
     /// `tests/properties/planes.rs` holds them against [`crate::perspective_weights`].
     #[inline(always)]
     #[must_use]
-    pub fn packet<S: Simd>(&self, simd: S, x: f64, y: f64) -> PacketCoordinates<S> {
-        let lanes = F64x16::from_fn(simd, |i| i as f64);
+    pub fn packet<S: Simd>(&self, simd: S, at: [f64; 2]) -> PacketCoordinates<S> {
+        self.spaced(simd, at, 1.0)
+    }
+
+    /// Coordinates in the middles of 16 quads, each of 2×2 pixels, side by side: their first pixel lies so many
+    /// from the origin. Derivatives are by a pixel.
+    ///
+    /// # Accuracy
+    /// As [`Self::packet`].
+    #[inline(always)]
+    #[must_use]
+    pub fn quads<S: Simd>(&self, simd: S, [x, y]: [f64; 2]) -> PacketCoordinates<S> {
+        self.spaced(simd, [x + 0.5, y + 0.5], 2.0)
+    }
+
+    /// Coordinates at 16 places in a row, so many pixels apart.
+    #[inline(always)]
+    fn spaced<S: Simd>(&self, simd: S, [x, y]: [f64; 2], apart: f64) -> PacketCoordinates<S> {
+        let lanes = F64x16::from_fn(
+            simd,
+            #[inline(always)]
+            |i| i as f64 * apart,
+        );
         let d = &self.denominator;
         let per_d = F64x16::splat(simd, 1.0) / d.row(simd, lanes, x, y);
         let inner = two(

@@ -5,11 +5,10 @@ use fearless_simd::{Simd, f32x16, i32x16, mask32x16, u32x16};
 use sampler::packet::{BlockWeights, ONE, Span, Tap, nearby};
 use sampler::{Cubic, Filter};
 
+use super::PackedPyramid;
 use super::blocks::{Blocks, texels_of};
 use super::layout::Placed;
-use super::line::Line;
 use super::plan::Plan;
-use super::PackedPyramid;
 use crate::sampler_state::SamplerState;
 
 /// The filter of each lane.
@@ -58,7 +57,6 @@ impl<S: Simd> Kernels<S> {
         simd: S,
         texture: &PackedPyramid,
         plan: &Plan<S>,
-        line: Option<&Line<S>>,
         [s, t]: [f32x16<S>; 2],
         taps: &mut Vec<Tap>,
     ) -> u32x16<S> {
@@ -71,13 +69,13 @@ impl<S: Simd> Kernels<S> {
         let count = 1 + usize::from(plan.fraction.simd_gt(zero).any_true());
         let levels = &levels[..count];
         let mut total = i32x16::splat(simd, 0);
-        let (pairs, sides): (u32, &[f32]) = match line {
+        let (pairs, sides): (u32, &[f32]) = match &plan.line {
             Some(line) => (line.pairs, &[-1.0, 1.0]),
             None => (1, &[0.0]),
         };
         taps.clear();
         for k in 0..pairs {
-            let (ds, dt, weight) = match line {
+            let (ds, dt, weight) = match &plan.line {
                 Some(line) => {
                     let (cells, weight) = line.pair(simd, k);
                     (line.step_s * cells, line.step_t * cells, weight)

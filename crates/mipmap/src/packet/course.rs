@@ -5,11 +5,11 @@ use fearless_simd::{Simd, f32x16, i32x16, mask32x16, u32x16};
 use sampler::packet::{ONE, Share, Tap, fold, held};
 use sampler::{AddressMode, Filter};
 
+use super::PackedPyramid;
 use super::layout::Placed;
 use super::line::Line;
 use super::plan::{Plan, has_one_level};
 use super::wrapping::Layer;
-use super::PackedPyramid;
 use crate::sampler_state::SamplerState;
 
 /// Where a packet's taps are: one place on one or two levels, or pairs of probes on either side of it.

@@ -5,7 +5,7 @@ use fearless_simd::{Simd, f32x16};
 
 use super::PackedPyramid;
 use super::gaussian::gaussian;
-use super::plan::Plan;
+use super::plan::{Ellipse, twice};
 use crate::lod::round_to_f32;
 use crate::probes::{CUT, CUT_VARIANCE, EDGE, ProbeWeights};
 
@@ -42,8 +42,12 @@ const LEAST_VARIANCE: f32 = 1e-6;
 
 impl<S: Simd> Line<S> {
     #[inline(always)]
-    pub(super) fn of(simd: S, texture: &PackedPyramid, plan: &Plan<S>, kind: ProbeWeights) -> Self {
-        let (ellipse, eta) = (&plan.ellipse, plan.eta);
+    pub(super) fn of(
+        simd: S,
+        texture: &PackedPyramid,
+        (ellipse, eta): (&Ellipse<S>, f32x16<S>),
+        kind: ProbeWeights,
+    ) -> Self {
         let zero = f32x16::splat(simd, 0.0);
         let one = f32x16::splat(simd, 1.0);
         // The longer axis over η, from texels to textures; beyond so many the coarsest level answers, wherever a probe
@@ -70,6 +74,23 @@ impl<S: Simd> Line<S> {
             weights,
             pairs: whole_number(pairs),
             common: whole_number(common),
+        }
+    }
+
+    /// As [`Plan::of_pixels`](super::plan::Plan::of_pixels): the lanes that have most pairs still say how many there are.
+    #[inline(always)]
+    pub(super) fn of_pixels(&self, half: usize) -> Self {
+        let weights = &self.weights;
+        Self {
+            step_s: twice(self.step_s, half),
+            step_t: twice(self.step_t, half),
+            weights: Weights {
+                whole: twice(weights.whole, half),
+                end_at: twice(weights.end_at, half),
+                end: twice(weights.end, half),
+                falloff: twice(weights.falloff, half),
+            },
+            ..*self
         }
     }
 

@@ -40,6 +40,7 @@ mod bicubic;
 mod blocks;
 mod course;
 mod ewa;
+mod find;
 mod finish;
 mod gaussian;
 mod layout;

@@ -4,6 +4,7 @@ use fearless_simd::prelude::*;
 use fearless_simd::{Simd, f32x16, mask32x16};
 use sampler::Filter;
 
+use super::line::Line;
 use super::{PackedPyramid, PacketFootprint};
 use crate::lod::{LodRule, packet_log2};
 use crate::sample::CUT_SHARPENING;
@@ -37,11 +38,8 @@ pub(super) struct Plan<S: Simd> {
     pub(super) fraction: f32x16<S>,
     /// Whether λ > 0.
     pub(super) minified: mask32x16<S>,
-    /// η: 1 for one probe.
-    pub(super) eta: f32x16<S>,
-    pub(super) ellipse: Ellipse<S>,
-    /// Whether a lane has more than one probe.
-    pub(super) is_line: bool,
+    /// None where every lane has one probe.
+    pub(super) line: Option<Line<S>>,
 }
 
 /// The footprint's ellipse in texels.
@@ -61,19 +59,12 @@ impl<S: Simd> Plan<S> {
     /// The plan of all footprints of a texture that [`has_one_plan`].
     #[inline(always)]
     pub(super) fn fixed(simd: S, texture: &PackedPyramid) -> Self {
-        let (zero, one) = (f32x16::splat(simd, 0.0), f32x16::splat(simd, 1.0));
+        let zero = f32x16::splat(simd, 0.0);
         Self {
             fine: f32x16::splat(simd, texture.stored()[0]),
             fraction: zero,
-            minified: zero.simd_eq(one),
-            eta: one,
-            ellipse: Ellipse {
-                bounded: zero.simd_eq(zero),
-                major_squared: one,
-                determinant: one,
-                along: [zero; 2],
-            },
-            is_line: false,
+            minified: zero.simd_lt(zero),
+            line: None,
         }
     }
 
@@ -115,14 +106,44 @@ impl<S: Simd> Plan<S> {
             .select(lambda, f32x16::splat(simd, f32::INFINITY));
         let lambda = limited(simd, state, lambda);
         let (fine, fraction) = levels(simd, texture, state, lambda);
+        let several = max_anisotropy > 1.0 && eta.simd_gt(one).any_true();
         Self {
             fine,
             fraction,
             minified: lambda.simd_gt(zero),
-            eta,
-            ellipse,
-            is_line: max_anisotropy > 1.0 && eta.simd_gt(one).any_true(),
+            line: several.then(
+                #[inline(always)]
+                || Line::of(simd, texture, (&ellipse, eta), state.probe_weights),
+            ),
         }
+    }
+
+    /// Of a plan of 16 quads of 2×2 pixels in a row, that of 16 pixels above or below each other: of the first eight quads
+    /// (`half` 0) or the last.
+    #[inline(always)]
+    pub(super) fn of_pixels(&self, half: usize) -> Self {
+        let simd = self.fine.simd;
+        let (zero, one) = (f32x16::splat(simd, 0.0), f32x16::splat(simd, 1.0));
+        let minified = twice(self.minified.select(one, zero), half);
+        Self {
+            fine: twice(self.fine, half),
+            fraction: twice(self.fraction, half),
+            minified: minified.simd_gt(zero),
+            line: self.line.as_ref().map(
+                #[inline(always)]
+                |line| line.of_pixels(half),
+            ),
+        }
+    }
+}
+
+/// The first eight lanes (`half` 0) or the last, each twice.
+#[inline(always)]
+pub(super) fn twice<S: Simd>(lanes: f32x16<S>, half: usize) -> f32x16<S> {
+    if half == 0 {
+        lanes.zip_low(lanes)
+    } else {
+        lanes.zip_high(lanes)
     }
 }
 

@@ -22,6 +22,7 @@ mod packet_automatic;
 mod packet_ewa;
 mod pyramid;
 mod rip_map;
+mod several_packets;
 mod stochastic;
 mod strategies;
 mod summed_area;

@@ -2,7 +2,7 @@
 
 use fearless_simd::{Level, Simd, dispatch, f32x16, prelude::*};
 use glam::{DVec2, Vec2, Vec4};
-use mipmap::packet::{PackedPyramid, PacketFootprint, ROW, Taps};
+use mipmap::packet::{PackedPyramid, PacketFootprint, Taps};
 use mipmap::{Content, Footprint, LodRule, MipFilter, Pyramid, SamplerState, sample};
 use proptest::prelude::*;
 use sampler::{AddressMode, Addressing, Cubic, Filter, Precision, Texels, Transfer};
@@ -41,7 +41,12 @@ pub(crate) fn packet_of<S: Simd>(simd: S, lanes: &Lanes) -> PacketFootprint<S> {
     }
 }
 
-fn colours(level: Level, packed: &PackedPyramid, state: &SamplerState, lanes: &Lanes) -> Colours {
+pub(crate) fn colours(
+    level: Level,
+    packed: &PackedPyramid,
+    state: &SamplerState,
+    lanes: &Lanes,
+) -> Colours {
     dispatch!(level, simd => {
         let mut taps = Taps::default();
         taps.find(simd, packed, state, &packet_of(simd, lanes));
@@ -222,32 +227,6 @@ proptest! {
             })
         });
         prop_assert_eq!(shared, own);
-    }
-
-    /// Taps of several packets found together are those of each found alone, to the bit.
-    #[test]
-    fn packets_of_a_row_do_not_mix(
-        texture in byte_texture(), state in any_state(), count in 0..=ROW,
-        footprints in prop::collection::vec(many(prop_oneof![footprint(), tame_footprint()]), ROW),
-    ) {
-        let pyramid = Pyramid::build(texture, Content::Colour).unwrap();
-        let packed = PackedPyramid::new(&pyramid, &state.address);
-        let lanes: Vec<Lanes> = footprints.iter().map(|footprints| lanes_of(footprints)).collect();
-        for level in levels() {
-            let together = dispatch!(level, simd => {
-                // What they held before leaves no trace.
-                let mut row: [Taps; ROW] = Default::default();
-                for footprints in [&lanes[..ROW], &lanes[..count]] {
-                    let footprint = |k: usize| packet_of(simd, &footprints[k]);
-                    Taps::find_row(simd, &packed, &state, &mut row[..footprints.len()], footprint);
-                }
-                row.map(|taps| taps.sample(simd, &packed).map(|c| c.to_array().map(f32::to_bits)))
-            });
-            for (together, lanes) in together[..count].iter().zip(&lanes) {
-                let alone = colours(level, &packed, &state, lanes);
-                prop_assert_eq!(*together, alone.map(|c| c.map(f32::to_bits)));
-            }
-        }
     }
 
     /// A constant comes back, to f32's rounding, from every format, line of probes and pair of levels.

@@ -13,9 +13,29 @@ use crate::strategies::{corner_st, screen_triangle};
 /// s and t, then their slopes by x and by y, lane by lane.
 type Found = ([[f64; LANES]; 2], [[[f32; LANES]; 2]; 2]);
 
+/// Where lanes look: at pixels in a row, or in the middles of quads.
+#[derive(Clone, Copy, Debug)]
+enum Lanes {
+    Pixels,
+    Quads,
+}
+
+impl Lanes {
+    /// How far right of the first pixel, and below it, in half pixels.
+    fn half_pixels(self, lane: usize) -> [i64; 2] {
+        match self {
+            Self::Pixels => [2 * lane as i64, 0],
+            Self::Quads => [4 * lane as i64 + 1, 1],
+        }
+    }
+}
+
 #[inline(always)]
-fn run<S: Simd>(simd: S, planes: &CoordinatePlanes, at: [f64; 2]) -> Found {
-    let found = planes.packet(simd, at[0], at[1]);
+fn run<S: Simd>(simd: S, planes: &CoordinatePlanes, lanes: Lanes, at: [f64; 2]) -> Found {
+    let found = match lanes {
+        Lanes::Pixels => planes.packet(simd, at),
+        Lanes::Quads => planes.quads(simd, at),
+    };
     let narrow = |v: [fearless_simd::f32x16<S>; 2]| v.map(|x| x.to_array());
     (
         found.st.map(F64x16::to_array),
@@ -29,6 +49,7 @@ proptest! {
     #[test]
     fn planes_are_the_scalar_function_within_their_bound(
         triangle in screen_triangle(), st in corner_st(), x in 0i64..64, y in 0i64..64,
+        lanes in prop_oneof![Just(Lanes::Pixels), Just(Lanes::Quads)],
     ) {
         // The triangle's point is the pixel (x, y) from the origin; a pixel is 256 units.
         let [by_x, by_y] = oracle::edge_gradients(&triangle).map(|g| g.map(|e| e * 256));
@@ -39,21 +60,25 @@ proptest! {
         let corners = st.map(|at| at.as_dvec2().to_array());
         let planes = CoordinatePlanes::new(&edges, triangle.inv_w.to_array(), corners);
         let at = [x as f64, y as f64];
-        let (st_found, slopes) = dispatch!(Level::baseline(), simd => run(simd, &planes, at));
-        prop_assert_eq!((st_found, slopes), dispatch!(Level::new(), simd => run(simd, &planes, at)));
+        let (st_found, slopes) = dispatch!(Level::baseline(), simd => run(simd, &planes, lanes, at));
+        prop_assert_eq!((st_found, slopes), dispatch!(Level::new(), simd => run(simd, &planes, lanes, at)));
 
         // Affine: inside at both ends is inside between.
-        if (0..3).any(|i| here[i] < 0 || here[i] + 15 * by_x[i] < 0) {
+        let values = |lane: usize| {
+            let [right, down] = lanes.half_pixels(lane);
+            [0, 1, 2].map(|i| here[i] + (right * by_x[i] + down * by_y[i]) / 2)
+        };
+        if [0, LANES - 1].into_iter().flat_map(values).any(|value| value < 0) {
             return Ok(());
         }
         for lane in 0..LANES {
-            let values = [0, 1, 2].map(|i| here[i] + lane as i64 * by_x[i]);
+            let values = values(lane);
             let vector = |e: [i64; 3]| DVec3::from_array(float(e));
             let truth = perspective_weights(vector(values), vector(by_x), vector(by_y), triangle.inv_w)
                 .interpolate_st(st);
             let d: f64 = (0..3).map(|i| values[i] as f64 * triangle.inv_w[i]).sum();
             let terms = |i: usize| {
-                let steps = (x + 16) * by_x[i].abs() + (y + 1) * by_y[i].abs();
+                let steps = (x + 32) * by_x[i].abs() + (y + 1) * by_y[i].abs();
                 (origin[i].abs() + steps) as f64 * triangle.inv_w[i]
             };
             let m = terms(0).max(terms(1)).max(terms(2)) / d;
@@ -87,7 +112,7 @@ proptest! {
         let corners = corners.map(|(x, y, w)| DVec3::new(x * w, y * w, w));
         let st = st.map(|at| at.as_dvec2().to_array());
         let planes = CoordinatePlanes::from_homogeneous(corners, st);
-        let (found, _) = dispatch!(Level::new(), simd => run(simd, &planes, [x, y]));
+        let (found, _) = dispatch!(Level::new(), simd => run(simd, &planes, Lanes::Pixels, [x, y]));
         for (lane, [found_s, found_t]) in found[0].into_iter().zip(found[1]).map(<[f64; 2]>::from).enumerate() {
             // Weights b with Σ bᵢ·cornerᵢ = λ·(x, y, 1), by Cramer's rule, made to add up to 1.
             let pixel = DVec3::new(x + lane as f64, y, 1.0);

@@ -100,7 +100,7 @@ proptest! {
         let plane_edges = ScreenEdges { origin: [n, 0.0, 0.0], dx: [-1.0, 1.0, 0.0], dy: [-1.0, 0.0, 1.0] };
         let planes = CoordinatePlanes::new(&plane_edges, inv_w.to_array(), [[0.0; 2], [1.0; 2], [0.0; 2]]);
         let row: [f64; 16] = dispatch!(Level::new(), simd => {
-            let [s, _] = planes.packet(simd, 0.0, 0.0).st;
+            let [s, _] = planes.packet(simd, [0.0; 2]).st;
             F64x16::to_array(s)
         });
         let d = values.dot(inv_w);

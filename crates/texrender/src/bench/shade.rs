@@ -36,10 +36,31 @@ struct LastPlanes {
 /// Memory of a thread.
 #[derive(Debug, Default)]
 pub(super) struct ShadeScratch {
-    /// What the packets of a row read of their textures.
+    /// What the packets of a block read of their textures.
     taps: [Taps; ROW],
     /// Where a tile's packets of several triangles are.
     mixed: Vec<[usize; 2]>,
+}
+
+/// Packets of a block, 32×2 pixels, that see one triangle each.
+#[derive(Default)]
+struct Whole {
+    /// Column of the first pixel and row: the upper ones first, from the left to the right.
+    places: [[usize; 2]; ROW],
+    owners: [u32; ROW],
+    count: usize,
+}
+
+impl Whole {
+    fn push(&mut self, place: [usize; 2], owner: u32) {
+        (self.places[self.count], self.owners[self.count]) = (place, owner);
+        self.count += 1;
+    }
+
+    /// Whether they are the whole block, and see one triangle.
+    fn are_one(&self) -> bool {
+        self.count == ROW && self.owners == [self.owners[0]; ROW]
+    }
 }
 
 impl TileShader<'_> {
@@ -55,36 +76,21 @@ impl TileShader<'_> {
         let corner = visibility.rect().min;
         let mut last = None;
         let ShadeScratch { taps, mixed } = scratch;
-        let mixed = Mixed::of(visibility.owners(), mixed);
-        for (y, row) in rows.iter_mut().enumerate() {
-            let (mut whole, mut count) = ([0; ROW], 0);
-            let mut owners = [0; ROW];
-            for (k, pixels) in row.chunks_mut(LANES).enumerate() {
-                match mixed.single(simd, [k * LANES, y]) {
-                    Single::Nobody => pixels.fill(CLEAR),
-                    Single::One(owner) if self.scene.shader == Shader::Texture => {
-                        (whole[count], owners[count]) = (k * LANES, owner);
-                        count += 1;
-                    }
-                    _ => mixed.places.push([k * LANES, y]),
+        let mut mixed = Mixed::of(visibility.owners(), mixed);
+        let width = rows.first().map_or(0, |row| row.len());
+        for y in (0..rows.len()).step_by(2) {
+            for x in (0..width).step_by(2 * LANES) {
+                let whole = self.whole(simd, rows, [x, y], &mut mixed);
+                // The taps of all packets before the texels of any: neither waits for the other.
+                self.find_whole(simd, &whole, corner, taps, &mut last);
+                let taps = &taps[..whole.count];
+                if self.state.max_anisotropy > 1.0 {
+                    taps.iter().for_each(|taps| taps.prefetch(self.textures[0]));
                 }
-            }
-            // The taps of all packets before the texels of any: neither waits for the other.
-            let taps = &mut taps[..count];
-            Taps::find_row(
-                simd,
-                self.textures[0],
-                self.state,
-                taps,
-                #[inline(always)]
-                |i| self.one_triangle(simd, owners[i], (corner, [whole[i], y]), &mut last),
-            );
-            if self.state.max_anisotropy > 1.0 {
-                taps.iter().for_each(|taps| taps.prefetch(self.textures[0]));
-            }
-            for (taps, first) in taps.iter().zip(whole) {
-                let end = row.len().min(first + LANES);
-                taps.write_codes(simd, self.textures[0], &mut row[first..end]);
+                for (taps, [x, y]) in taps.iter().zip(whole.places) {
+                    let end = width.min(x + LANES);
+                    taps.write_codes(simd, self.textures[0], &mut rows[y][x..end]);
+                }
             }
         }
         let taps = &mut taps[0];
@@ -95,24 +101,90 @@ impl TileShader<'_> {
         }
     }
 
-    /// Where sixteen pixels of one triangle look: inlined, so that its planes stay in registers along a row.
+    /// The packets of a block, from its first pixel on, that are read at once; clears those that see nothing, and notes
+    /// the others.
     #[inline(always)]
-    fn one_triangle<S: Simd>(
+    fn whole<S: Simd>(
         &self,
         simd: S,
-        owner: u32,
-        (corner, at): (UVec2, [usize; 2]),
-        last: &mut Option<LastPlanes>,
-    ) -> PacketFootprint<S> {
-        let planes = match last {
-            Some(last) if last.owner == owner => &last.planes,
-            _ => {
-                let planes = self.planes(owner, corner);
-                &last.insert(LastPlanes { owner, planes }).planes
+        rows: &mut [&mut [u32]],
+        [x, y]: [usize; 2],
+        mixed: &mut Mixed,
+    ) -> Whole {
+        let mut whole = Whole::default();
+        for (y, row) in (y..).zip(&mut rows[y..]).take(2) {
+            for (x, pixels) in (x..).step_by(LANES).zip(row[x..].chunks_mut(LANES)).take(2) {
+                match mixed.single(simd, [x, y]) {
+                    Single::Nobody => pixels.fill(CLEAR),
+                    Single::One(owner) if self.scene.shader == Shader::Texture => {
+                        whole.push([x, y], owner);
+                    }
+                    _ => mixed.places.push([x, y]),
+                }
             }
-        };
-        let coordinates = planes.packet(simd, at[0] as f64, at[1] as f64);
-        footprint(self.textures[0], &coordinates)
+        }
+        whole
+    }
+
+    /// Finds what they read of the texture.
+    #[inline(always)]
+    fn find_whole<S: Simd>(
+        &self,
+        simd: S,
+        whole: &Whole,
+        corner: UVec2,
+        taps: &mut [Taps; ROW],
+        last: &mut Option<LastPlanes>,
+    ) {
+        let texture = self.textures[0];
+        if whole.are_one() {
+            let planes = self.last_planes(whole.owners[0], corner, last);
+            let at = |k: usize| whole.places[k].map(|pixel| pixel as f64);
+            Taps::find_quads(
+                simd,
+                texture,
+                self.state,
+                taps,
+                #[inline(always)]
+                || footprint(texture, &planes.quads(simd, at(0))),
+                #[inline(always)]
+                |k| {
+                    let pixels = footprint(texture, &planes.packet(simd, at(k)));
+                    [pixels.s, pixels.t]
+                },
+            );
+        } else {
+            Taps::find_row(
+                simd,
+                texture,
+                self.state,
+                &mut taps[..whole.count],
+                #[inline(always)]
+                |k| {
+                    let planes = self.last_planes(whole.owners[k], corner, last);
+                    let at = whole.places[k].map(|pixel| pixel as f64);
+                    footprint(texture, &planes.packet(simd, at))
+                },
+            );
+        }
+    }
+
+    /// Texture coordinates over a triangle, again where it is the last one.
+    #[inline(always)]
+    fn last_planes<'l>(
+        &self,
+        owner: u32,
+        corner: UVec2,
+        last: &'l mut Option<LastPlanes>,
+    ) -> &'l CoordinatePlanes {
+        if last.as_ref().is_some_and(|last| last.owner != owner) {
+            *last = None;
+        }
+        let planes = last.get_or_insert_with(|| LastPlanes {
+            owner,
+            planes: self.planes(owner, corner),
+        });
+        &planes.planes
     }
 
     /// Texture coordinates over a triangle, from the first pixel of a tile: by its corners in clip space, which have not
