@@ -8,8 +8,7 @@ use sampler::{AddressMode, Filter};
 use super::PackedPyramid;
 use super::layout::Placed;
 use super::line::Line;
-use super::plan::{Plan, has_one_level};
-use super::wrapping::Layer;
+use super::plan::Plan;
 use crate::sampler_state::SamplerState;
 
 /// Where a packet's taps are: one place on one or two levels, or pairs of probes on either side of it.
@@ -23,10 +22,8 @@ pub(super) struct Course<S: Simd> {
     placed: [Placed<S>; 2],
     /// How many of them are read.
     pub(super) levels: usize,
-    pub(super) fraction: f32x16<S>,
+    fraction: f32x16<S>,
     split: Split<S>,
-    /// Whether the texture repeats, all its sides are powers of two, and every tap is bilinear.
-    pub(super) wraps: bool,
 }
 
 /// How a place on an axis is split into the first of two neighbouring texels and the weight of the second.
@@ -50,23 +47,16 @@ impl<S: Simd> Course<S> {
         plan: &Plan<S>,
     ) -> Self {
         let split = Split::of(simd, texture, state, plan.minified);
-        let one_level = has_one_level(texture, state);
-        let placed = if one_level {
-            texture.placed_everywhere(simd, texture.finest() as usize)
-        } else {
-            texture.placed(simd, plan.fine)
-        };
-        let wraps = texture.wraps() && split.between_centres;
+        let (placed, levels) = plan.placed(simd, texture, state);
         Self {
             simd,
             modes: texture.modes(),
             stride: texture.sheet().stride(),
             middle: [held(simd, s), held(simd, t)],
             placed,
-            levels: 1 + usize::from(!one_level && plan.fraction.simd_gt(0.0).any_true()),
+            levels,
             fraction: plan.fraction,
             split,
-            wraps,
         }
     }
 
@@ -83,7 +73,6 @@ impl<S: Simd> Course<S> {
             levels: 1,
             fraction: zero,
             split: Split::of(simd, texture, &SamplerState::default(), zero.simd_lt(zero)),
-            wraps: false,
         }
     }
 
@@ -110,18 +99,6 @@ impl<S: Simd> Course<S> {
         // Counted from the ring.
         let offsets = placed.origin + (row + 1) * self.stride + (column + 1);
         tap.set_single(self.simd, offsets);
-    }
-
-    /// A level for taps in whole numbers, 0 the finer one. Only where it [`wraps`](Self::wraps).
-    #[inline(always)]
-    pub(super) fn layer(&self, level: usize) -> Layer<S> {
-        Layer::of(self.simd, &self.placed[level], self.middle, self.stride)
-    }
-
-    /// Both.
-    #[inline(always)]
-    pub(super) fn layers(&self) -> [Layer<S>; 2] {
-        [self.layer(0), self.layer(1)]
     }
 
     /// Sets twice as many to those of a pair of probes on either side of the middle; returns what each probe counts

@@ -3,13 +3,13 @@
 use fearless_simd::prelude::*;
 use fearless_simd::{Simd, f32x16, u32x16};
 use sampler::Filter;
-use sampler::packet::Tap;
+use sampler::packet::{Tap, held};
 
 use super::bicubic::Kernels;
 use super::course::Course;
 use super::plan::{Plan, greatest_anisotropy, has_one_plan};
 use super::taps::{Kind, ROW, Taps};
-use super::wrapping::{middle, probes};
+use super::wrapping::{Layer, middle, probes, wraps};
 use super::{PackedPyramid, PacketFootprint};
 use crate::sampler_state::SamplerState;
 
@@ -43,13 +43,18 @@ impl Taps {
         mut footprint: impl FnMut(usize) -> PacketFootprint<S>,
     ) {
         if has_one_plan(texture, state) {
-            let plan = Plan::fixed(simd, texture);
-            for (k, taps) in row.iter_mut().enumerate() {
-                // Its size is not asked for, and so not computed.
-                let PacketFootprint { s, t, .. } = footprint(k);
-                taps.find_planned(simd, texture, state, [s, t], &plan);
-            }
-            return;
+            // Their sizes are not asked for, and so not computed.
+            return Self::find_places(
+                simd,
+                texture,
+                state,
+                row,
+                #[inline(always)]
+                |k| {
+                    let PacketFootprint { s, t, .. } = footprint(k);
+                    [s, t]
+                },
+            );
         }
         let mut footprints = [None; ROW];
         for (k, place) in footprints[..row.len()].iter_mut().enumerate() {
@@ -94,11 +99,7 @@ impl Taps {
         mut place: impl FnMut(usize) -> [f32x16<S>; 2],
     ) {
         if has_one_plan(texture, state) {
-            let plan = Plan::fixed(simd, texture);
-            for (k, taps) in packets.iter_mut().enumerate() {
-                taps.find_planned(simd, texture, state, place(k), &plan);
-            }
-            return;
+            return Self::find_places(simd, texture, state, packets, place);
         }
         let quads = quads();
         let mut places = [None; ROW];
@@ -120,6 +121,37 @@ impl Taps {
         );
     }
 
+    /// As [`Self::find_row`] of a texture that [`has_one_plan`]: all they need is where their pixels look.
+    #[inline(always)]
+    fn find_places<S: Simd>(
+        simd: S,
+        texture: &PackedPyramid,
+        state: &SamplerState,
+        packets: &mut [Self],
+        mut place: impl FnMut(usize) -> [f32x16<S>; 2],
+    ) {
+        let plan = Plan::fixed(simd, texture);
+        if Kind::of(texture, state) == Kind::Picked {
+            // So little work that a call would be half of it.
+            for (k, taps) in packets.iter_mut().enumerate() {
+                taps.set_picked(simd, texture, state, place(k), &plan);
+            }
+            return;
+        }
+        let mut places = [None; ROW];
+        for (k, at) in places[..packets.len()].iter_mut().enumerate() {
+            *at = Some(place(k));
+        }
+        simd.vectorize(
+            #[inline(always)]
+            || {
+                for (taps, place) in packets.iter_mut().zip(places.iter().flatten()) {
+                    taps.set_weighted(simd, texture, state, *place, &plan);
+                }
+            },
+        );
+    }
+
     /// As [`Self::find`]. `most`: as [`Plan::of`] takes it.
     #[inline(always)]
     pub(super) fn find_following<S: Simd>(
@@ -132,36 +164,23 @@ impl Taps {
     ) {
         let place = [footprint.s, footprint.t];
         if has_one_plan(texture, state) {
-            self.find_planned(simd, texture, state, place, &Plan::fixed(simd, texture));
-        } else {
-            simd.vectorize(
+            let this = std::slice::from_mut(self);
+            return Self::find_places(
+                simd,
+                texture,
+                state,
+                this,
                 #[inline(always)]
-                || {
-                    let plan = Plan::of(simd, texture, state, most, footprint);
-                    self.set(simd, texture, state, place, &plan);
-                },
+                |_| place,
             );
         }
-    }
-
-    #[inline(always)]
-    fn find_planned<S: Simd>(
-        &mut self,
-        simd: S,
-        texture: &PackedPyramid,
-        state: &SamplerState,
-        place: [f32x16<S>; 2],
-        plan: &Plan<S>,
-    ) {
-        if Kind::of(texture, state) == Kind::Picked {
-            // So little work that a call would be half of it.
-            self.set_picked(simd, texture, state, place, plan);
-        } else {
-            simd.vectorize(
-                #[inline(always)]
-                || self.set(simd, texture, state, place, plan),
-            );
-        }
+        simd.vectorize(
+            #[inline(always)]
+            || {
+                let plan = Plan::of(simd, texture, state, most, footprint);
+                self.set(simd, texture, state, place, &plan);
+            },
+        );
     }
 
     /// Sets the taps at a place, (s,t), by what was planned for it.
@@ -213,30 +232,53 @@ impl Taps {
                 || self.set_cubic(simd, texture, place, plan, &kernels),
             );
         }
+        if wraps(texture, state) {
+            return self.set_wrapped(simd, texture, state, place, plan);
+        }
         let course = Course::new(simd, texture, state, place, plan);
         if let Some(line) = &plan.line {
             self.begin(2 * course.levels, line.pairs as usize);
-            let total = match (course.wraps, course.levels) {
-                (true, 1) => {
-                    let layers = [course.layer(0)];
-                    probes(&layers, course.fraction, line, &mut self.list)
-                }
-                (true, _) => probes(&course.layers(), course.fraction, line, &mut self.list),
-                (false, _) => {
-                    let mut total = u32x16::splat(simd, 0);
-                    for (pair, taps) in (0..).zip(self.list.chunks_exact_mut(self.a_step)) {
-                        total += course.pair(line, pair, taps);
-                    }
-                    total
-                }
-            };
+            let mut total = u32x16::splat(simd, 0);
+            for (pair, taps) in (0..).zip(self.list.chunks_exact_mut(self.a_step)) {
+                total += course.pair(line, pair, taps);
+            }
             self.total = Some((total * 2).to_array());
         } else {
             self.begin(course.levels, 1);
-            match (course.wraps, course.levels) {
-                (true, 1) => middle(&[course.layer(0)], course.fraction, &mut self.list),
-                (true, _) => middle(&course.layers(), course.fraction, &mut self.list),
-                (false, _) => course.middle(&mut self.list),
+            course.middle(&mut self.list);
+        }
+    }
+
+    /// In whole numbers.
+    #[inline(always)]
+    fn set_wrapped<S: Simd>(
+        &mut self,
+        simd: S,
+        texture: &PackedPyramid,
+        state: &SamplerState,
+        [s, t]: [f32x16<S>; 2],
+        plan: &Plan<S>,
+    ) {
+        let (placed, levels) = plan.placed(simd, texture, state);
+        let (stride, place) = (texture.sheet().stride(), [held(simd, s), held(simd, t)]);
+        let finer = Layer::of(simd, &placed[0], place, stride);
+        let one = levels == 1;
+        if let Some(line) = &plan.line {
+            self.begin(2 * levels, line.pairs as usize);
+            let total = if one {
+                probes(&[finer], plan.fraction, line, &mut self.list)
+            } else {
+                let layers = [finer, Layer::of(simd, &placed[1], place, stride)];
+                probes(&layers, plan.fraction, line, &mut self.list)
+            };
+            self.total = Some((total * 2).to_array());
+        } else {
+            self.begin(levels, 1);
+            if one {
+                middle(&[finer], plan.fraction, &mut self.list);
+            } else {
+                let layers = [finer, Layer::of(simd, &placed[1], place, stride)];
+                middle(&layers, plan.fraction, &mut self.list);
             }
         }
     }
@@ -259,8 +301,18 @@ impl Taps {
     /// Room for so many, whatever they were.
     #[inline(always)]
     fn begin(&mut self, taps_a_step: usize, steps: usize) {
+        let count = taps_a_step * steps;
+        if self.list.len() != count {
+            self.resize(count);
+        }
         self.a_step = taps_a_step;
-        self.list.resize(taps_a_step * steps, Tap::NONE);
         self.total = None;
+    }
+
+    /// Seldom, and not in the way: registers are kept across what is not called.
+    #[cold]
+    #[inline(never)]
+    fn resize(&mut self, count: usize) {
+        self.list.resize(count, Tap::NONE);
     }
 }

@@ -4,6 +4,7 @@ use fearless_simd::prelude::*;
 use fearless_simd::{Simd, f32x16, mask32x16};
 use sampler::Filter;
 
+use super::layout::Placed;
 use super::line::Line;
 use super::{PackedPyramid, PacketFootprint};
 use crate::lod::{LodRule, packet_log2};
@@ -116,6 +117,24 @@ impl<S: Simd> Plan<S> {
                 || Line::of(simd, texture, (&ellipse, eta), state.probe_weights),
             ),
         }
+    }
+
+    /// Where the finer level and the next lie, and how many of them are read.
+    #[inline(always)]
+    pub(super) fn placed(
+        &self,
+        simd: S,
+        texture: &PackedPyramid,
+        state: &SamplerState,
+    ) -> ([Placed<S>; 2], usize) {
+        if has_one_level(texture, state) {
+            return (
+                texture.placed_everywhere(simd, texture.finest() as usize),
+                1,
+            );
+        }
+        let blended = self.fraction.simd_gt(0.0).any_true();
+        (texture.placed(simd, self.fine), 1 + usize::from(blended))
     }
 
     /// Of a plan of 16 quads of 2×2 pixels in a row, that of 16 pixels above or below each other: of the first eight quads

@@ -2,12 +2,14 @@
 
 use fearless_simd::prelude::*;
 use fearless_simd::{Simd, f32x16, i32x16, u32x16};
-use sampler::AddressMode;
 use sampler::packet::{ONE, Tap, Wrapped, fold};
+use sampler::{AddressMode, Filter};
 
+use super::PackedPyramid;
 use super::course::units;
 use super::layout::Placed;
 use super::line::Line;
+use crate::sampler_state::SamplerState;
 
 /// Where the taps of a packet are on one level.
 #[derive(Clone, Copy)]
@@ -17,6 +19,13 @@ pub(super) struct Layer<S: Simd> {
     units: [f32x16<S>; 2],
     /// The middle, as [`Wrapped`] takes it.
     middle: [u32x16<S>; 2],
+}
+
+/// Whether the taps of lookups by `state` are bilinear, of a texture that repeats and whose sides are powers of two.
+#[inline(always)]
+pub(super) fn wraps(texture: &PackedPyramid, state: &SamplerState) -> bool {
+    let bilinear = state.magnify != Filter::Nearest && state.minify != Filter::Nearest;
+    bilinear && texture.wraps()
 }
 
 /// Units of a [`Wrapped`] in a unit of [`Placed`].

@@ -43,23 +43,33 @@ pub(super) struct ShadeScratch {
 }
 
 /// Packets of a block, 32×2 pixels, that see one triangle each.
-#[derive(Default)]
 struct Whole {
+    /// The block's first pixel.
+    first: [usize; 2],
     /// Column of the first pixel and row: the upper ones first, from the left to the right.
     places: [[usize; 2]; ROW],
     owners: [u32; ROW],
     count: usize,
+    /// Whether all see the triangle of the first.
+    alike: bool,
 }
 
 impl Whole {
+    fn new(first: [usize; 2]) -> Self {
+        Self {
+            first,
+            places: [first; ROW],
+            owners: [0; ROW],
+            count: 0,
+            alike: true,
+        }
+    }
+
+    #[inline(always)]
     fn push(&mut self, place: [usize; 2], owner: u32) {
         (self.places[self.count], self.owners[self.count]) = (place, owner);
         self.count += 1;
-    }
-
-    /// Whether they are the whole block, and see one triangle.
-    fn are_one(&self) -> bool {
-        self.count == ROW && self.owners == [self.owners[0]; ROW]
+        self.alike &= owner == self.owners[0];
     }
 }
 
@@ -111,7 +121,7 @@ impl TileShader<'_> {
         [x, y]: [usize; 2],
         mixed: &mut Mixed,
     ) -> Whole {
-        let mut whole = Whole::default();
+        let mut whole = Whole::new([x, y]);
         for (y, row) in (y..).zip(&mut rows[y..]).take(2) {
             for (x, pixels) in (x..).step_by(LANES).zip(row[x..].chunks_mut(LANES)).take(2) {
                 match mixed.single(simd, [x, y]) {
@@ -137,9 +147,11 @@ impl TileShader<'_> {
         last: &mut Option<LastPlanes>,
     ) {
         let texture = self.textures[0];
-        if whole.are_one() {
+        if whole.count == ROW && whole.alike {
             let planes = self.last_planes(whole.owners[0], corner, last);
-            let at = |k: usize| whole.places[k].map(|pixel| pixel as f64);
+            // Of the whole block: from its first pixel, not from memory.
+            let [x, y] = whole.first;
+            let at = |k: usize| [(x + k % 2 * LANES) as f64, (y + k / 2) as f64];
             Taps::find_quads(
                 simd,
                 texture,
