@@ -4,7 +4,7 @@ use fearless_simd::Simd;
 use glam::{DVec3, UVec2};
 use mipmap::SamplerState;
 use mipmap::packet::{PackedPyramid, PacketFootprint, ROW, Taps};
-use raster::{Frame, VisibilityTile};
+use raster::{Frame, Owners, VisibilityTile};
 use texcoord::packet::LANES;
 use texcoord::planes::{CoordinatePlanes, PacketCoordinates};
 
@@ -83,6 +83,9 @@ impl TileShader<'_> {
         rows: &mut [&mut [u32]],
         scratch: &mut ShadeScratch,
     ) {
+        if let Owners::Single(None) = visibility.owners() {
+            return rows.iter_mut().for_each(|row| row.fill(CLEAR));
+        }
         let corner = visibility.rect().min;
         let mut last = None;
         let ShadeScratch { taps, mixed } = scratch;
@@ -122,15 +125,21 @@ impl TileShader<'_> {
         mixed: &mut Mixed,
     ) -> Whole {
         let mut whole = Whole::new([x, y]);
-        for (y, row) in (y..).zip(&mut rows[y..]).take(2) {
-            for (x, pixels) in (x..).step_by(LANES).zip(row[x..].chunks_mut(LANES)).take(2) {
-                match mixed.single(simd, [x, y]) {
-                    Single::Nobody => pixels.fill(CLEAR),
-                    Single::One(owner) if self.scene.shader == Shader::Texture => {
-                        whole.push([x, y], owner);
-                    }
-                    _ => mixed.places.push([x, y]),
+        for k in 0..ROW {
+            let [x, y] = [x + k % 2 * LANES, y + k / 2];
+            let pixels = rows.get_mut(y).and_then(|row| row.get_mut(x..));
+            let Some(pixels) = pixels.filter(|pixels| !pixels.is_empty()) else {
+                continue;
+            };
+            match mixed.single(simd, [x, y]) {
+                Single::Nobody => pixels
+                    .iter_mut()
+                    .take(LANES)
+                    .for_each(|pixel| *pixel = CLEAR),
+                Single::One(owner) if self.scene.shader == Shader::Texture => {
+                    whole.push([x, y], owner);
                 }
+                _ => mixed.places.push([x, y]),
             }
         }
         whole
