@@ -11,7 +11,6 @@
 use fearless_simd::prelude::*;
 use fearless_simd::{Simd, u32x16};
 
-use super::LANES;
 use super::tap::Tap;
 
 /// Taps, and the texels that they read.
@@ -102,17 +101,17 @@ impl<T: Copy> Quad<'_, T> {
     }
 }
 
-/// Asks for what stands at each lane's offset to be brought near, where the instruction set has a word for it; offsets
-/// beyond the end are no error.
+/// Asks for what stands at an offset to be brought near, where the instruction set has a word for it; one beyond the end is
+/// no error.
 #[inline(always)]
-pub(super) fn prefetch<T>(texels: &[T], offsets: &[u32; LANES]) {
+pub(super) fn prefetch<T>(texels: &[T], offset: usize) {
     #[cfg(target_arch = "x86_64")]
-    for &offset in offsets {
+    {
         use core::arch::x86_64::{_MM_HINT_T0, _mm_prefetch};
-        let texel = texels.as_ptr().wrapping_add(offset as usize);
+        let texel = texels.as_ptr().wrapping_add(offset);
         // SAFETY: a hint, which reads nothing and faults nowhere.
         unsafe { _mm_prefetch::<_MM_HINT_T0>(texel.cast()) };
     }
     #[cfg(not(target_arch = "x86_64"))]
-    let _ = (texels, offsets);
+    let _ = (texels, offset);
 }
