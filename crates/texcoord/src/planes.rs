@@ -118,7 +118,7 @@ impl CoordinatePlanes {
         }
     }
 
-    /// Coordinates at 16 pixels: the first lies so many from the origin, `at`, the others to its right.
+    /// Coordinates at 16 pixels: the first lies so many from the origin, the others to its right.
     ///
     /// # Accuracy
     /// For 16 pixels inside the triangle. With m the largest term of D, at the origin or between it and the pixels, over

@@ -29,8 +29,8 @@ impl Taps {
 
     /// As [`Self::find`] for up to [`ROW`] packets, the `k`-th of which has the footprint `footprint(k)`.
     ///
-    /// All levels are chosen before any texels: each is a chain of arithmetic as long as what a core looks ahead, and
-    /// so those of neighbours overlap. It saves a tenth of the time of trilinear lookups, a twentieth of anisotropic ones.
+    /// All levels are chosen before any texels: each is a chain of arithmetic as long as what a core looks ahead, and so
+    /// those of neighbours overlap. It saves a tenth of the time of trilinear lookups, a twentieth of anisotropic ones.
     ///
     /// # Panics
     /// If `row` has more than [`ROW`].
@@ -76,16 +76,15 @@ impl Taps {
         );
     }
 
-    /// As [`Self::find`] for four packets of 32×2 pixels that see one surface: the left and the right of the upper row, then
-    /// those of the lower one.
+    /// As [`Self::find`] for four packets, 32×2 pixels that see one surface: the left and the right of the upper row,
+    /// then those of the lower one.
     ///
-    /// One footprint serves the four pixels of a quad, as it does on GPUs (Vulkan 1.4, "Derivative Operations"): levels and
-    /// lines of probes are chosen once for all packets, which saves a fifth of the time of filters that have them. Where
-    /// a pixel looks is its own.
+    /// One footprint serves the four pixels of a quad, as it does on GPUs (Vulkan 1.4, "Derivative Operations"): levels
+    /// and lines of probes are chosen once for all packets, which saves a fifth of the time of filters that have them.
+    /// Where a pixel looks is its own.
     ///
-    /// `quads`: the footprints in the middles of the sixteen quads, by a pixel; only its derivatives count. `place`: (s,t)
-    /// of the pixels of the `k`-th packet, as [`PacketFootprint`] has them. Derivatives that are not needed are not asked
-    /// for.
+    /// `quads`: the footprints in the middles of the sixteen quads, by a pixel; only their derivatives count, and they
+    /// are asked for only if they do. `place`: (s,t) of the pixels of the `k`-th packet, as [`PacketFootprint`] has them.
     ///
     /// # Accuracy
     /// That of [`Self::find`] for the footprint of a quad: λ is off by what it changes by in half a pixel either way.

@@ -3,7 +3,8 @@
 //! [`PackedPyramid`] is a pyramid laid out for them: all levels on one sheet, each in a ring of what its address
 //! modes find beyond the border. [`Taps`] are the texels that sixteen footprints read and their weights:
 //! [`Taps::find`] and [`Taps::sample`] are the packet twin of [`crate::sample`], [`Taps::write_codes`] the same rounded to
-//! 8-bit RGBA; [`ewa()`] and [`automatic()`] are those of [`crate::ewa`] and [`crate::automatic`].
+//! 8-bit RGBA; [`Taps::find_row`] finds those of several packets, [`Taps::find_quads`] those of 32×2 pixels by a footprint
+//! a quad; [`ewa()`] and [`automatic()`] are those of [`crate::ewa`] and [`crate::automatic`].
 //!
 //! ```
 //! use fearless_simd::{Level, dispatch, f32x16, prelude::*};

@@ -56,10 +56,10 @@ impl Kind {
 impl Taps {
     /// Asks for the texels that they read of a texture to be brought near, ahead of [`Self::sample`], where that pays.
     ///
-    /// A hint: see [`Sheet::prefetch`](sampler::packet::Sheet::prefetch). Nothing is asked for of textures that the nearer
-    /// caches of a core hold. Of neighbouring lookups in one texture of 2048² texels it saves half the time where texels
-    /// are f32, a fifth to a third where they are 16-bit codes, an eighth of several taps of 8-bit ones; of one or two taps
-    /// of those it costs what it saves, if there is no other texture to wait for.
+    /// A hint: see [`Sheet::prefetch`](sampler::packet::Sheet::prefetch). Nothing is asked for of textures that the
+    /// nearer caches of a core hold. Of neighbouring lookups in one texture of 2048² texels it saves half the time where
+    /// texels are f32, a fifth to a third where they are 16-bit codes, an eighth of several taps of 8-bit ones; of one or
+    /// two taps of those it costs what it saves, if there is no other texture to wait for.
     #[inline]
     pub fn prefetch(&self, texture: &PackedPyramid) {
         if texture.byte_len() > NEAR {

@@ -101,8 +101,8 @@ impl<T: Copy> Quad<'_, T> {
     }
 }
 
-/// Asks for what stands at an offset to be brought near, where the instruction set has a word for it; one beyond the end is
-/// no error.
+/// Asks for what stands at an offset to be brought near, where the instruction set has a word for it; one beyond the end
+/// is no error.
 #[inline(always)]
 pub(super) fn prefetch<T>(texels: &[T], offset: usize) {
     #[cfg(target_arch = "x86_64")]

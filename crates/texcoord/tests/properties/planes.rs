@@ -78,7 +78,8 @@ proptest! {
                 .interpolate_st(st);
             let d: f64 = (0..3).map(|i| values[i] as f64 * triangle.inv_w[i]).sum();
             let terms = |i: usize| {
-                let steps = (x + 32) * by_x[i].abs() + (y + 1) * by_y[i].abs();
+                let reach = lanes.half_pixels(LANES)[0] / 2;
+                let steps = (x + reach) * by_x[i].abs() + (y + 1) * by_y[i].abs();
                 (origin[i].abs() + steps) as f64 * triangle.inv_w[i]
             };
             let m = terms(0).max(terms(1)).max(terms(2)) / d;
