@@ -128,7 +128,7 @@ proptest! {
         }
     }
 
-    /// For triangles of some pixels and texels it is nearly what is seen at their corners.
+    /// For triangles of some pixels and texels it is nearly what is seen at their corners, less what slivers lose.
     #[test]
     fn the_bound_is_close(
         corners in [[0.1..0.4f64, 0.1..0.4f64], [0.6..0.9f64, 0.1..0.4f64], [0.1..0.9f64, 0.6..0.9f64]], depth in 1.0..50.0f64,
@@ -150,7 +150,10 @@ proptest! {
             axes(dx, dy)[1]
         });
         let least = DVec3::from_array(least).min_element();
-        prop_assert!(bound <= least * 1.01 && bound >= least * 0.6, "{bound} for {least}");
+        // What the bound gives up for rounding, as its docs say: all of it where the triangle is a sliver.
+        let [t1, t2] = [attribute[1] - attribute[0], attribute[2] - attribute[0]];
+        let given_up = (t1.length_squared() + t2.length_squared()) / (1024.0 * t1.perp_dot(t2).abs());
+        prop_assert!(bound <= least * 1.01 && bound >= least * (0.6 - given_up), "{bound} for {least}");
     }
 }
 
